@@ -1,0 +1,83 @@
+//! Axis-aligned boxes.
+
+use glam::{DAffine3, DVec3};
+
+/// The closed box of points `p` with `min ≤ p ≤ max` on every axis.
+///
+/// It is empty when `min > max` on any axis. Bounds may be infinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// The corner with the smallest coordinates.
+    pub min: DVec3,
+    /// The corner with the largest coordinates.
+    pub max: DVec3,
+}
+
+impl Aabb {
+    /// The box without points: the neutral element of [`Aabb::hull`].
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// All of space: the neutral element of [`Aabb::intersection`].
+    pub const ALL: Self = Self { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+
+    /// The box with these two corners.
+    pub const fn new(min: DVec3, max: DVec3) -> Self {
+        Self { min, max }
+    }
+
+    /// The smallest box around some points.
+    pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |b, p| Self::new(b.min.min(p), b.max.max(p)))
+    }
+
+    /// The smallest box around two boxes.
+    #[must_use]
+    pub fn hull(self, other: Self) -> Self {
+        Self::new(self.min.min(other.min), self.max.max(other.max))
+    }
+
+    /// What two boxes have in common.
+    #[must_use]
+    pub fn intersection(self, other: Self) -> Self {
+        Self::new(self.min.max(other.min), self.max.min(other.max))
+    }
+
+    /// Whether no point lies inside.
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmple(self.max).all()
+    }
+
+    /// Whether all six bounds are finite; true of no empty box.
+    pub fn is_bounded(&self) -> bool {
+        !self.is_empty() && self.min.is_finite() && self.max.is_finite()
+    }
+
+    /// The lengths of the edges; zero for an empty box.
+    pub fn size(&self) -> DVec3 {
+        if self.is_empty() { DVec3::ZERO } else { self.max - self.min }
+    }
+
+    /// The middle of a bounded box.
+    pub fn center(&self) -> DVec3 {
+        0.5 * self.min + 0.5 * self.max
+    }
+
+    /// The eight corners.
+    pub fn corners(&self) -> [DVec3; 8] {
+        let Self { min, max } = *self;
+        std::array::from_fn(|i| {
+            let pick = |bit: usize, lo: f64, hi: f64| if i & bit == 0 { lo } else { hi };
+            DVec3::new(
+                pick(1, min.x, max.x),
+                pick(2, min.y, max.y),
+                pick(4, min.z, max.z),
+            )
+        })
+    }
+
+    /// The smallest box around the image of a bounded box under an affine map.
+    #[must_use]
+    pub fn mapped(&self, map: &DAffine3) -> Self {
+        Self::around(self.corners().map(|p| map.transform_point3(p)))
+    }
+}

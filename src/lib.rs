@@ -1,0 +1,16 @@
+//! Constructive solid geometry by rays.
+
+mod aabb;
+mod color;
+mod mesh;
+mod op;
+mod ray;
+pub mod shape;
+mod solid;
+
+pub use aabb::Aabb;
+pub use color::Color;
+pub use mesh::{Mesh, MeshError, OpenEdge};
+pub use op::Op;
+pub use ray::{Crossing, Ray, Sense, Span};
+pub use solid::{Place, Solid};

@@ -1,0 +1,77 @@
+//! Closed, oriented triangle meshes.
+//!
+//! A [`Mesh`] that exists is the boundary of a solid: [`Mesh::new`] checks and explains.
+
+mod check;
+mod error;
+
+use glam::DVec3;
+
+use crate::aabb::Aabb;
+pub use error::{MeshError, OpenEdge};
+
+/// A closed, oriented triangle mesh.
+///
+/// Every directed edge of a face is matched by a face that runs along it the other way,
+/// so every line goes in as often as it comes out, however the mesh touches or passes
+/// through itself. Faces are counter-clockwise seen from outside; inside is where the
+/// winding number is positive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    points: Vec<DVec3>,
+    faces: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// A mesh of points and faces, each face three indices of points.
+    ///
+    /// Faces may be degenerate, edges may belong to more than two faces and points may
+    /// be used by no face.
+    ///
+    /// # Errors
+    ///
+    /// The first fault found, in the order in which [`MeshError`] lists them.
+    pub fn new(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        check::indices(&points, &faces)?;
+        check::closed(&points, &faces)?;
+        let mesh = Self { points, faces };
+        let volume = mesh.volume();
+        if volume < 0.0 { Err(MeshError::InsideOut { volume }) } else { Ok(mesh) }
+    }
+
+    /// The points.
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// The faces, as indices of points, counter-clockwise seen from outside.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// The corners of one face.
+    pub(crate) fn corners(&self, face: usize) -> [DVec3; 3] {
+        self.faces[face].map(|i| self.points[i as usize])
+    }
+
+    /// The smallest box around the points that faces use.
+    pub fn bounds(&self) -> Aabb {
+        Aabb::around(self.faces.iter().flatten().map(|&i| self.points[i as usize]))
+    }
+
+    /// The enclosed volume by the divergence theorem, each stretch of space counted as
+    /// often as the mesh winds around it.
+    ///
+    /// Tetrahedra are measured from the centre of the bounds, so that a mesh far from the
+    /// origin loses no digits.
+    pub fn volume(&self) -> f64 {
+        let center = self.bounds().center();
+        let sixth: f64 = (0..self.faces.len())
+            .map(|i| {
+                let [a, b, c] = self.corners(i).map(|p| p - center);
+                a.dot(b.cross(c))
+            })
+            .sum();
+        sixth / 6.0
+    }
+}
