@@ -1,10 +1,12 @@
 //! Constructive solid geometry by rays.
 
 mod aabb;
+mod bvh;
 mod color;
 mod mesh;
 mod op;
 mod ray;
+mod scene;
 pub mod shape;
 mod solid;
 
@@ -13,4 +15,5 @@ pub use color::Color;
 pub use mesh::{Mesh, MeshError, OpenEdge};
 pub use op::Op;
 pub use ray::{Crossing, Ray, Sense, Span};
+pub use scene::{CompileError, Leaf, LeafName, Part, Scene, Tracer};
 pub use solid::{Place, Solid};

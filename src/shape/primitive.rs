@@ -87,14 +87,7 @@ impl Primitive {
         match self {
             Self::Cuboid { .. } => "cuboid",
             Self::HalfSpace { .. } => "half-space",
-            Self::Quadric { profile, .. } => match profile {
-                Profile::Ball { .. } => "ball",
-                Profile::Cylinder { .. } => "cylinder",
-                Profile::Cone { .. } => "cone",
-                Profile::Paraboloid { .. } => "paraboloid",
-                Profile::OneSheet { .. } => "hyperboloid of one sheet",
-                Profile::TwoSheets { .. } => "hyperboloid of two sheets",
-            },
+            Self::Quadric { profile, .. } => profile.name(),
         }
     }
 
@@ -130,6 +123,18 @@ impl Primitive {
 }
 
 impl Profile {
+    /// What the quadric is called in reports.
+    pub(crate) const fn name(&self) -> &'static str {
+        match self {
+            Self::Ball { .. } => "ball",
+            Self::Cylinder { .. } => "cylinder",
+            Self::Cone { .. } => "cone",
+            Self::Paraboloid { .. } => "paraboloid",
+            Self::OneSheet { .. } => "hyperboloid of one sheet",
+            Self::TwoSheets { .. } => "hyperboloid of two sheets",
+        }
+    }
+
     /// ρ as the polynomial `a z² + 2 b z + c`: its `[a, b, c]`.
     pub(crate) fn coefficients(&self) -> [f64; 3] {
         match *self {

@@ -1,0 +1,155 @@
+//! The Boolean expression of a scene as counters.
+
+use crate::aabb::Aabb;
+
+/// How the children of a node combine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Combine {
+    /// True when all are; true without children.
+    All,
+    /// True when one is; false without children.
+    Any,
+}
+
+/// A leaf as its parent sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Literal {
+    /// The node above.
+    pub(crate) parent: u32,
+    /// Whether it is true outside the leaf rather than inside.
+    pub(crate) complement: bool,
+}
+
+/// An expression in which complements have been pushed to the leaves.
+///
+/// A node is true when at least `need` of its children are: all of them, or one. Parents
+/// stand before their children. Node 0 is the root, a union.
+#[derive(Debug)]
+pub(crate) struct Program {
+    nodes: Vec<Node>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    parent: u32,
+    need: u32,
+    combine: Combine,
+}
+
+impl Program {
+    /// The union of nothing yet.
+    pub(crate) fn new() -> Self {
+        Self { nodes: vec![Node { parent: 0, need: 1, combine: Combine::Any }] }
+    }
+
+    /// How many nodes there are.
+    pub(crate) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The node to add children to for an operator below `parent`: a new one, or the parent
+    /// itself if it combines its children in the same way. `None` when nodes have run out.
+    pub(crate) fn node_below(&mut self, parent: u32, combine: Combine) -> Option<u32> {
+        if self.nodes[parent as usize].combine == combine {
+            return Some(parent);
+        }
+        self.expect_child(parent);
+        let id = u32::try_from(self.nodes.len()).ok()?;
+        let need = match combine {
+            Combine::All => 0,
+            Combine::Any => 1,
+        };
+        self.nodes.push(Node { parent, need, combine });
+        Some(id)
+    }
+
+    /// Notes that a node gets one more child.
+    pub(crate) fn expect_child(&mut self, parent: u32) {
+        let node = &mut self.nodes[parent as usize];
+        if node.combine == Combine::All {
+            node.need += 1;
+        }
+    }
+
+    /// How many children of each node are true far away from everything, where a leaf is
+    /// true if it is a complement.
+    pub(crate) fn counts_far_away(&self, literals: &[Literal]) -> Vec<u32> {
+        let mut counts = vec![0; self.nodes.len()];
+        for literal in literals.iter().filter(|literal| literal.complement) {
+            counts[literal.parent as usize] += 1;
+        }
+        for (i, node) in self.nodes.iter().enumerate().skip(1).rev() {
+            if counts[i] >= node.need {
+                counts[node.parent as usize] += 1;
+            }
+        }
+        counts
+    }
+
+    /// A box around where the root is true, from the boxes of the leaves.
+    pub(crate) fn bounds(&self, literals: &[Literal], leaves: &[Aabb]) -> Aabb {
+        let mut boxes: Vec<Aabb> = self
+            .nodes
+            .iter()
+            .map(|node| match node.combine {
+                Combine::All => Aabb::ALL,
+                Combine::Any => Aabb::EMPTY,
+            })
+            .collect();
+        for (literal, &leaf) in literals.iter().zip(leaves) {
+            let around = if literal.complement { Aabb::ALL } else { leaf };
+            self.merge(&mut boxes, literal.parent, around);
+        }
+        for i in (1..self.nodes.len()).rev() {
+            let around = boxes[i];
+            self.merge(&mut boxes, self.nodes[i].parent, around);
+        }
+        boxes[0]
+    }
+
+    fn merge(&self, boxes: &mut [Aabb], node: u32, child: Aabb) {
+        let b = &mut boxes[node as usize];
+        *b = match self.nodes[node as usize].combine {
+            Combine::All => b.intersection(child),
+            // The hull of an empty box would be wrong: its bounds are no bounds.
+            Combine::Any if child.is_empty() => *b,
+            Combine::Any => b.hull(child),
+        };
+    }
+
+    /// Whether the root is true.
+    pub(crate) fn root(&self, counts: &[u32]) -> bool {
+        counts[0] >= self.nodes[0].need
+    }
+
+    /// Tells the nodes above a leaf that it has become true or false.
+    pub(crate) fn toggle(&self, counts: &mut [u32], parent: u32, mut value: bool) {
+        let mut at = parent;
+        loop {
+            let (node, count) = (&self.nodes[at as usize], &mut counts[at as usize]);
+            let before = *count >= node.need;
+            *count = if value { *count + 1 } else { *count - 1 };
+            let after = *count >= node.need;
+            if before == after || at == 0 {
+                return;
+            }
+            value = after;
+            at = node.parent;
+        }
+    }
+
+    /// Whether all nodes from `parent` up to the root have this value.
+    pub(crate) fn agrees(&self, counts: &[u32], parent: u32, value: bool) -> bool {
+        let mut at = parent;
+        loop {
+            let node = &self.nodes[at as usize];
+            if (counts[at as usize] >= node.need) != value {
+                return false;
+            }
+            if at == 0 {
+                return true;
+            }
+            at = node.parent;
+        }
+    }
+}

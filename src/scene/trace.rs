@@ -1,0 +1,163 @@
+//! One ray through a scene: gather, sort, sweep.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::Scene;
+use crate::ray::{Crossing, Ray, Sense, Span};
+use crate::shape::{Event, Line, Sink};
+
+/// Scratch memory for queries on a scene; make one for each thread.
+///
+/// Between queries every counter is back where it was, because every leaf is left as often
+/// as it is entered; so a query costs what it meets, not what the scene holds.
+#[derive(Debug)]
+pub struct Tracer<'a> {
+    scene: &'a Scene,
+    /// How many children of each node are true.
+    counts: Vec<u32>,
+    /// How often each leaf has been entered and not yet left.
+    winding: Vec<i32>,
+    events: Vec<Event>,
+    spans: Vec<Span>,
+}
+
+/// The direction in which points are asked about, (√0.3, √0.1, √0.6): along no axis,
+/// diagonal or other line that models are full of.
+const PROBE: DVec3 = DVec3::new(
+    0.547_722_557_505_166_1,
+    0.316_227_766_016_837_94,
+    0.774_596_669_241_483_4,
+);
+
+impl<'a> Tracer<'a> {
+    pub(super) fn new(scene: &'a Scene) -> Self {
+        Self {
+            scene,
+            counts: scene.far_away.clone(),
+            winding: vec![0; scene.shapes.len()],
+            events: Vec::new(),
+            spans: Vec::new(),
+        }
+    }
+
+    /// The stretches of a ray inside the solid, over the whole line: in order, disjoint,
+    /// none empty.
+    ///
+    /// Touching stretches are one; where the ray only touches the solid there is none. A
+    /// ray within a face counts as moved a little to one side, the same for all faces that
+    /// lie in one plane. Stretches whose ends are the same number `t` are left out.
+    pub fn spans(&mut self, ray: &Ray) -> &[Span] {
+        self.spans.clear();
+        if let Some(line) = Line::new(ray, &self.scene.bounds) {
+            self.gather(&line);
+            self.sweep(&line);
+        }
+        &self.spans
+    }
+
+    /// The first crossing at `t ≥ 0`: where the ray enters, or where it comes out if it
+    /// starts inside.
+    pub fn first_hit(&mut self, ray: &Ray) -> Option<Crossing> {
+        let spans = self.spans(ray);
+        spans.iter().flat_map(|span| [span.enter, span.exit]).find(|c| c.t >= 0.0)
+    }
+
+    /// Whether a point is inside: whether `t = 0` is in a span of a line through it, ends
+    /// at which the line enters included.
+    pub fn contains(&mut self, point: DVec3) -> bool {
+        let spans = self.spans(&Ray::new(point, PROBE));
+        spans.iter().any(|span| span.enter.t <= 0.0 && 0.0 < span.exit.t)
+    }
+
+    /// All crossings with all leaves that the line can meet, in order.
+    fn gather(&mut self, line: &Line) {
+        let Self { scene, events, .. } = self;
+        events.clear();
+        scene.hierarchy.crossed(&line.slabs(&scene.bounds), |leaf| {
+            let surface = scene.shapes[leaf as usize].surface();
+            surface.crossings(line, &mut Sink { events, leaf });
+        });
+        events.sort_unstable_by(in_order);
+    }
+
+    /// Walks along the line, toggling all leaves that are crossed at one place before
+    /// looking whether the solid was entered or left there.
+    fn sweep(&mut self, line: &Line) {
+        let mut entered: Option<Crossing> = None;
+        let mut from = 0;
+        while from < self.events.len() {
+            let t = self.events[from].t;
+            #[expect(clippy::float_cmp, reason = "one place is one number")]
+            let group =
+                self.events[from..].iter().take_while(|event| event.t == t).count();
+            let (before, after) = self.toggle(from..from + group);
+            if before != after {
+                let sense = if after { Sense::Enter } else { Sense::Exit };
+                let event = self.owner(from..from + group, after);
+                let Event { leaf, face, .. } = event;
+                let crossing = Crossing { t: line.on_ray(t), leaf, face, sense };
+                match entered.take() {
+                    None => entered = Some(crossing),
+                    Some(enter) if enter.t < crossing.t => {
+                        self.spans.push(Span { enter, exit: crossing });
+                    }
+                    Some(_) => {}
+                }
+            }
+            from += group;
+        }
+        debug_assert!(entered.is_none(), "every leaf is left as often as it is entered");
+        debug_assert!(self.counts == self.scene.far_away, "the counters are back");
+    }
+
+    /// Toggles the leaves of some events; says whether the root was true before and is
+    /// after.
+    fn toggle(&mut self, group: std::ops::Range<usize>) -> (bool, bool) {
+        let Scene { program, literals, .. } = self.scene;
+        let before = program.root(&self.counts);
+        for event in &self.events[group] {
+            let literal = literals[event.leaf as usize];
+            let winding = &mut self.winding[event.leaf as usize];
+            let was_inside = *winding > 0;
+            *winding += match event.sense {
+                Sense::Enter => 1,
+                Sense::Exit => -1,
+            };
+            let is_inside = *winding > 0;
+            if was_inside != is_inside {
+                program.toggle(
+                    &mut self.counts,
+                    literal.parent,
+                    is_inside != literal.complement,
+                );
+            }
+        }
+        (before, program.root(&self.counts))
+    }
+
+    /// The event to which a change of the root is put down: the first in the order of the
+    /// tree whose leaf changed the same way and has all nodes above it on its side.
+    fn owner(&self, group: std::ops::Range<usize>, value: bool) -> Event {
+        let Scene { program, literals, .. } = self.scene;
+        let events = &self.events[group];
+        let is_owner = |event: &&Event| {
+            let literal = literals[event.leaf as usize];
+            let is_inside = self.winding[event.leaf as usize] > 0;
+            let rises = (event.sense == Sense::Enter) != literal.complement;
+            rises == value
+                && (is_inside != literal.complement) == value
+                && program.agrees(&self.counts, literal.parent, value)
+        };
+        *events.iter().find(is_owner).unwrap_or(&events[0])
+    }
+}
+
+/// By place, then in the order of the tree.
+fn in_order(a: &Event, b: &Event) -> Ordering {
+    a.t.partial_cmp(&b.t)
+        .unwrap_or(Ordering::Equal)
+        .then(a.leaf.cmp(&b.leaf))
+        .then(a.face.cmp(&b.face))
+}

@@ -1,0 +1,66 @@
+//! A ray made ready for leaves.
+
+use glam::DVec3;
+
+use crate::aabb::Aabb;
+use crate::bvh::Slabs;
+use crate::ray::Ray;
+
+/// A line in the frame in which leaves compute: its origin is near the scene and its
+/// direction near unit length.
+///
+/// The origin is the middle of the stretch inside the scene's bounds, so that no leaf sees
+/// an origin farther away than the scene is large: the error of a crossing grows with that
+/// distance (R. Haines, J. Günther, T. Akenine-Möller, "Precision Improvements for
+/// Ray/Sphere Intersection", Ray Tracing Gems, ch. 7, 2019). It depends on the line and the
+/// scene alone. The direction is scaled by a power of two, which rounds nothing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    /// The point at `t = 0` of this line.
+    pub(crate) origin: DVec3,
+    /// The direction; its largest component is in 1..2 for all but denormal directions.
+    pub(crate) dir: DVec3,
+    /// Where the origin is on the ray, in multiples of `dir`.
+    offset: f64,
+    /// `dir` in multiples of the ray's direction: a power of two.
+    scale: f64,
+}
+
+impl Line {
+    /// The ray as a line, unless it passes by the bounds or is not valid.
+    pub(crate) fn new(ray: &Ray, bounds: &Aabb) -> Option<Self> {
+        if !ray.is_valid() || !bounds.is_bounded() {
+            return None;
+        }
+        let scale = inverse_power_of_two(ray.dir.abs().max_element());
+        let dir = ray.dir * scale;
+        let [near, far] = Slabs::new(ray.origin, dir, bounds).range(bounds);
+        // A range that is not finite belongs to a line too far away to be told apart.
+        if near > far || !near.is_finite() || !far.is_finite() {
+            return None;
+        }
+        let offset = 0.5 * (near + far);
+        Some(Self { origin: ray.origin + offset * dir, dir, offset, scale })
+    }
+
+    /// A place on this line as a place on the ray.
+    pub(crate) fn on_ray(&self, t: f64) -> f64 {
+        (self.offset + t) * self.scale
+    }
+
+    /// Box tests along this line.
+    pub(crate) fn slabs(&self, bounds: &Aabb) -> Slabs {
+        Slabs::new(self.origin, self.dir, bounds)
+    }
+}
+
+/// The power of two that brings a positive number into 1..2, or as near as one factor goes
+/// for denormal numbers and those above 2¹⁰²³.
+fn inverse_power_of_two(x: f64) -> f64 {
+    /// The exponent field of 1.0.
+    const BIAS: u64 = 1023;
+    // The field of 2⁻ᵉ is 2 BIAS minus that of 2ᵉ; both ends of its range are taken by
+    // other kinds of numbers.
+    let field = (2 * BIAS - (x.to_bits() >> 52)).clamp(1, 2 * BIAS - 1);
+    f64::from_bits(field << 52)
+}
