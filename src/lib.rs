@@ -3,9 +3,11 @@
 mod aabb;
 mod bvh;
 mod color;
+pub mod measure;
 mod mesh;
 mod op;
 mod ray;
+mod sampling;
 mod scene;
 pub mod shape;
 mod solid;

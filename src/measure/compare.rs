@@ -1,0 +1,232 @@
+//! How much two solids differ, and where most.
+
+use glam::DVec3;
+
+use super::estimate::{Estimate, Method};
+use super::lattice::{Beam, Progress, Round, Sampling, Tally, rounds, student};
+use super::volume::{Chords, estimate};
+use crate::ray::{Ray, Span};
+use crate::scene::{CompileError, Scene, Tracer};
+use crate::solid::Solid;
+
+/// Two solids side by side. Volumes are in cubic model units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// The volume of the first.
+    pub a: Estimate,
+    /// The volume of the second.
+    pub b: Estimate,
+    /// The volume of what only the first has.
+    pub a_minus_b: Estimate,
+    /// The volume of what only the second has.
+    pub b_minus_a: Estimate,
+    /// The volume of what only one of them has.
+    pub difference: Estimate,
+    /// Intersection over union: 1 for equal solids, and for two empty ones.
+    pub iou: Estimate,
+    /// The longest stretch of any ray that is in one of them only, if there was one.
+    pub worst: Option<Worst>,
+    /// Whether `difference` is at most the tolerance times the larger volume.
+    pub verdict: Verdict,
+}
+
+/// A stretch of a ray that is in one solid only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Worst {
+    /// Its length, in model units.
+    pub length: f64,
+    /// Where it begins.
+    pub from: DVec3,
+    /// Where it ends.
+    pub to: DVec3,
+    /// Whether it is in the first solid rather than in the second.
+    pub in_a: bool,
+}
+
+/// Whether two solids are equal within a tolerance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The whole interval of the difference is within the tolerance.
+    Same,
+    /// The whole interval is beyond it.
+    Different,
+    /// The limit of rays or time was reached before either could be said.
+    Undecided,
+}
+
+/// The chords of the four solids that a comparison measures.
+#[derive(Default)]
+struct Tallies {
+    chords: [Chords; 4],
+    difference: Chords,
+    worst: Option<Worst>,
+}
+
+impl Tally for Tallies {
+    fn add(&mut self, later: Self) {
+        for (sum, chords) in self.chords.iter_mut().zip(later.chords) {
+            sum.add(chords);
+        }
+        self.difference.add(later.difference);
+        self.worst = longer(self.worst, later.worst);
+    }
+}
+
+/// Measures the two solids, A − B and B − A with the same rays, until the verdict is clear
+/// and both volumes are within `sampling.rel_tol`.
+///
+/// The differences are compiled as solids, so that surfaces which both have cancel.
+///
+/// # Errors
+///
+/// If one of them cannot be compiled.
+pub fn compare(
+    a: &Solid,
+    b: &Solid,
+    tolerance: f64,
+    sampling: &Sampling,
+    progress: Progress<'_>,
+) -> Result<Comparison, CompileError> {
+    let scenes = [
+        Scene::compile(a)?,
+        Scene::compile(b)?,
+        Scene::compile(&(a.clone() - b.clone()))?,
+        Scene::compile(&(b.clone() - a.clone()))?,
+    ];
+    let bounds = scenes[0].bounds().hull(scenes[1].bounds());
+    if bounds.is_empty() {
+        return Ok(both_empty());
+    }
+    let beam = Beam::new(bounds);
+    let comparison = |round: &Round<Tallies>, rays| {
+        summary(&beam, round, rays, tolerance, sampling.rel_tol)
+    };
+    let (round, rays) = rounds(
+        &beam,
+        sampling,
+        progress,
+        || scenes.each_ref().map(Scene::tracer),
+        sample,
+        |round, rays| {
+            let now = comparison(round, rays);
+            let fine = |e: &Estimate| e.target_met || e.value == 0.0;
+            now.verdict != Verdict::Undecided && fine(&now.a) && fine(&now.b)
+        },
+    );
+    Ok(comparison(&round, rays))
+}
+
+fn both_empty() -> Comparison {
+    let nothing = Estimate::exact(0.0);
+    Comparison {
+        a: nothing,
+        b: nothing,
+        a_minus_b: nothing,
+        b_minus_a: nothing,
+        difference: nothing,
+        iou: Estimate::exact(1.0),
+        worst: None,
+        verdict: Verdict::Same,
+    }
+}
+
+fn sample(tracers: &mut [Tracer<'_>; 4], ray: &Ray, tallies: &mut Tallies) {
+    let mut only_one = 0.0;
+    for (i, tracer) in tracers.iter_mut().enumerate() {
+        let spans = tracer.spans(ray);
+        let length = spans.iter().map(Span::length).sum();
+        tallies.chords[i].add_ray(length);
+        if i >= 2 {
+            only_one += length;
+            let longest = spans.iter().max_by(|s, t| s.length().total_cmp(&t.length()));
+            let found = longest.map(|span| Worst {
+                length: span.length() * ray.dir.length(),
+                from: ray.at(span.enter.t),
+                to: ray.at(span.exit.t),
+                in_a: i == 2,
+            });
+            tallies.worst = longer(tallies.worst, found);
+        }
+    }
+    tallies.difference.add_ray(only_one);
+}
+
+/// The longer of two stretches, the first if they are equally long.
+fn longer(first: Option<Worst>, second: Option<Worst>) -> Option<Worst> {
+    match (first, second) {
+        (Some(a), Some(b)) => Some(if b.length > a.length { b } else { a }),
+        (found, None) | (None, found) => found,
+    }
+}
+
+fn summary(
+    beam: &Beam,
+    round: &Round<Tallies>,
+    rays: u64,
+    tolerance: f64,
+    rel_tol: f64,
+) -> Comparison {
+    let [a, b, a_minus_b, b_minus_a] =
+        std::array::from_fn(|i| estimate(beam, round, rays, rel_tol, |t| t.chords[i]));
+    let difference = estimate(beam, round, rays, rel_tol, |t| t.difference);
+    let allowed = tolerance * a.value.max(b.value);
+    let verdict = if difference.interval[1] <= allowed {
+        Verdict::Same
+    } else if difference.interval[0] > allowed {
+        Verdict::Different
+    } else {
+        Verdict::Undecided
+    };
+    Comparison {
+        a,
+        b,
+        a_minus_b,
+        b_minus_a,
+        difference,
+        iou: overlap(beam, round, rays, &difference, rel_tol),
+        worst: round.replicates.iter().fold(None, |w, t| longer(w, t.worst)),
+        verdict,
+    }
+}
+
+/// Intersection over union, lattice by lattice. Where the difference is not resolved the
+/// interval is that of the difference: 1 − difference / union.
+fn overlap(
+    beam: &Beam,
+    round: &Round<Tallies>,
+    rays: u64,
+    difference: &Estimate,
+    rel_tol: f64,
+) -> Estimate {
+    let ratio = |t: &Tallies| {
+        let [a, b, a_minus_b, b_minus_a] = t.chords.map(|c| c.length);
+        let (common, all) = (
+            0.5 * (a + b - a_minus_b - b_minus_a),
+            0.5 * (a + b + a_minus_b + b_minus_a),
+        );
+        if all > 0.0 { (common / all).clamp(0.0, 1.0) } else { 1.0 }
+    };
+    let ratios: Vec<f64> = round.replicates.iter().map(ratio).collect();
+    let (value, half_width) = student(&ratios);
+    let union = estimate(beam, round, rays, rel_tol, |t| {
+        let [a, b, ..] = t.chords;
+        Chords {
+            length: 0.5 * (a.length + b.length + t.difference.length),
+            hits: a.hits.max(b.hits),
+        }
+    });
+    let interval = if difference.resolved {
+        [(value - half_width).max(0.0), (value + half_width).min(1.0)]
+    } else {
+        [(1.0 - difference.interval[1] / union.value).max(0.0), 1.0]
+    };
+    let target_met = union.resolved && interval[1] - interval[0] <= 2.0 * rel_tol;
+    Estimate {
+        value,
+        interval,
+        rays,
+        method: Method::Lattice,
+        target_met,
+        resolved: union.resolved,
+    }
+}

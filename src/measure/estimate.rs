@@ -1,0 +1,58 @@
+//! Numbers with error bars.
+
+/// A measured number and where the true one lies with 95 % confidence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The best guess, in model units to the power that fits.
+    pub value: f64,
+    /// The 95 % interval.
+    pub interval: [f64; 2],
+    /// How many rays were spent, those of earlier rounds included.
+    pub rays: u64,
+    /// How it was measured.
+    pub method: Method,
+    /// Whether the interval is as narrow as was asked for.
+    pub target_met: bool,
+    /// Whether enough rays met the solid for `value` to mean anything. If not, `interval`
+    /// begins at zero and its end is a one-sided bound.
+    pub resolved: bool,
+}
+
+/// How a number was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Method {
+    /// By a formula, without rays: the interval has no width.
+    Exact,
+    /// From randomly shifted Fibonacci lattices of parallel rays.
+    Lattice,
+}
+
+impl Method {
+    /// Its name in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Lattice => "lattice",
+        }
+    }
+}
+
+impl Estimate {
+    /// A number known without rays.
+    pub(super) const fn exact(value: f64) -> Self {
+        Self {
+            value,
+            interval: [value; 2],
+            rays: 0,
+            method: Method::Exact,
+            target_met: true,
+            resolved: true,
+        }
+    }
+
+    /// Half the width of the interval.
+    pub fn half_width(&self) -> f64 {
+        0.5 * (self.interval[1] - self.interval[0])
+    }
+}

@@ -1,0 +1,217 @@
+//! Integration over parallel rays by randomly shifted lattices.
+//!
+//! A chord length is a function of two variables that is smoother than the solid itself:
+//! its Fourier coefficients fall like |k|⁻² for curved silhouettes, so lattices reach an
+//! error of order 1/N where random rays reach 1/√N. Sixteen lattices, each shifted at
+//! random, are sixteen independent unbiased estimates, and Student's t makes an interval of
+//! them (P. L'Ecuyer, C. Lemieux, "Variance Reduction via Lattice Rules", Management
+//! Science 46(9), 2000).
+
+use std::time::{Duration, Instant};
+
+use glam::{DVec2, DVec3};
+
+use crate::aabb::Aabb;
+use crate::ray::Ray;
+use crate::sampling::{Fibonacci, hash, unit};
+
+/// How many independent lattices.
+pub(super) const REPLICATES: usize = 16;
+
+/// The 97.5 % quantile of Student's t with 15 degrees of freedom.
+const T_QUANTILE: f64 = 2.131_449_545_559_323;
+
+/// Fewer rays than this that meet the solid, in any replicate, and the spread between
+/// replicates says nothing about the error.
+pub(super) const ENOUGH_HITS: u64 = 10;
+
+/// How many rays one task takes. Sums are formed by tasks and added in their order, so this
+/// number is part of the answer's last bits, and the number of threads is not.
+const TASK: u64 = 1024;
+
+/// The size of the first lattices.
+const FIRST: u64 = 233;
+
+/// How far to go, and where to start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// The half width of the interval to reach, as a fraction of the value.
+    pub rel_tol: f64,
+    /// No more rays than this, but at least one round of 16 lattices of 233.
+    pub max_rays: u64,
+    /// No round is begun that would probably end later than this.
+    pub time_limit: Option<Duration>,
+    /// Which random shifts. Equal seeds give equal answers, bit by bit, on any number of
+    /// threads, unless a time limit cuts one short.
+    pub seed: u64,
+}
+
+impl Default for Sampling {
+    /// One part in ten thousand, with at most 2²⁶ rays.
+    fn default() -> Self {
+        Self { rel_tol: 1e-4, max_rays: 1 << 26, time_limit: None, seed: 0 }
+    }
+}
+
+/// Called from any thread with a number of rays just done.
+pub type Progress<'a> = &'a (dyn Fn(u64) + Sync);
+
+/// Something that adds up over rays.
+pub(super) trait Tally: Default + Send {
+    /// Adds what later rays found.
+    fn add(&mut self, later: Self);
+}
+
+/// What each lattice of one round found.
+pub(super) struct Round<T> {
+    pub(super) replicates: Vec<T>,
+    /// How many rays each lattice has.
+    pub(super) size: u64,
+}
+
+/// The rays parallel to the longest edge of a box, which cross the smallest face.
+pub(super) struct Beam {
+    bounds: Aabb,
+    axis: usize,
+}
+
+impl Beam {
+    pub(super) fn new(bounds: Aabb) -> Self {
+        Self { bounds, axis: bounds.size().max_position() }
+    }
+
+    /// The area of the face that the rays cross.
+    pub(super) fn area(&self) -> f64 {
+        let size = self.bounds.size();
+        size[(self.axis + 1) % 3] * size[(self.axis + 2) % 3]
+    }
+
+    /// How far the rays go through the box.
+    pub(super) fn depth(&self) -> f64 {
+        self.bounds.size()[self.axis]
+    }
+
+    /// The ray at a place in the unit square; its direction has length one.
+    fn ray(&self, at: DVec2) -> Ray {
+        let (size, mut origin) = (self.bounds.size(), self.bounds.center());
+        let (u, v) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
+        origin[u] = self.bounds.min[u] + at.x * size[u];
+        origin[v] = self.bounds.min[v] + at.y * size[v];
+        Ray::new(origin, DVec3::AXES[self.axis])
+    }
+}
+
+/// Rounds of ever larger lattices until `enough` says so or a limit is reached. Returns the
+/// last round and the number of rays of all.
+///
+/// `scratch` makes what a thread needs, `sample` adds one ray to a tally.
+pub(super) fn rounds<S, T: Tally>(
+    beam: &Beam,
+    sampling: &Sampling,
+    progress: Progress<'_>,
+    scratch: impl Fn() -> S + Sync + Send,
+    sample: impl Fn(&mut S, &Ray, &mut T) + Sync + Send,
+    mut enough: impl FnMut(&Round<T>, u64) -> bool,
+) -> (Round<T>, u64) {
+    let start = Instant::now();
+    let (mut lattice, mut rays) = (Fibonacci::at_least(FIRST), 0);
+    loop {
+        let before = start.elapsed();
+        let round = round(beam, sampling.seed, lattice, progress, &scratch, &sample);
+        rays += lattice.len() * REPLICATES as u64;
+        if enough(&round, rays) {
+            return (round, rays);
+        }
+        let next = Fibonacci::at_least(2 * lattice.len());
+        let growth = next.len() as f64 / lattice.len() as f64;
+        let took = start.elapsed() - before;
+        let late = sampling
+            .time_limit
+            .is_some_and(|limit| start.elapsed() + took.mul_f64(growth) > limit);
+        let more = next.len() * REPLICATES as u64;
+        if late || rays + more > sampling.max_rays || next.len() == lattice.len() {
+            return (round, rays);
+        }
+        lattice = next;
+    }
+}
+
+fn round<S, T: Tally>(
+    beam: &Beam,
+    seed: u64,
+    lattice: Fibonacci,
+    progress: Progress<'_>,
+    scratch: &(impl Fn() -> S + Sync + Send),
+    sample: &(impl Fn(&mut S, &Ray, &mut T) + Sync + Send),
+) -> Round<T> {
+    let size = lattice.len();
+    let shift = |replicate: u64| {
+        let part = |axis| unit(hash(seed, &[size, replicate, axis]));
+        DVec2::new(part(0), part(1))
+    };
+    let tasks_each = size.div_ceil(TASK);
+    let tasks = tasks_each * REPLICATES as u64;
+    let partial = |scratch: &mut S, task: u64| {
+        let (replicate, part) = (task / tasks_each, task % tasks_each);
+        let (shift, mut tally) = (shift(replicate), T::default());
+        let range = part * TASK..((part + 1) * TASK).min(size);
+        progress(range.end - range.start);
+        for i in range {
+            sample(scratch, &beam.ray(lattice.point(i, shift)), &mut tally);
+        }
+        tally
+    };
+    let mut partials = in_order(tasks, scratch, partial).into_iter();
+    let replicates = (0..REPLICATES)
+        .map(|_| {
+            let mut total = T::default();
+            partials.by_ref().take(usize_of(tasks_each)).for_each(|part| total.add(part));
+            total
+        })
+        .collect();
+    Round { replicates, size }
+}
+
+/// The results of tasks `0..count`, in order, from as many threads as there are.
+#[cfg(feature = "parallel")]
+fn in_order<S, T: Send>(
+    count: u64,
+    scratch: &(impl Fn() -> S + Sync + Send),
+    task: impl Fn(&mut S, u64) -> T + Sync + Send,
+) -> Vec<T> {
+    use rayon::prelude::*;
+    (0..usize_of(count))
+        .into_par_iter()
+        .map_init(scratch, |scratch, i| task(scratch, i as u64))
+        .collect()
+}
+
+/// The results of tasks `0..count`, in order.
+#[cfg(not(feature = "parallel"))]
+fn in_order<S, T: Send>(
+    count: u64,
+    scratch: &(impl Fn() -> S + Sync + Send),
+    task: impl Fn(&mut S, u64) -> T + Sync + Send,
+) -> Vec<T> {
+    let mut scratch = scratch();
+    (0..count).map(|i| task(&mut scratch, i)).collect()
+}
+
+fn usize_of(count: u64) -> usize {
+    usize::try_from(count).expect("partial sums of one round fit the memory")
+}
+
+/// The mean of the replicates' estimates and the half width of its 95 % interval.
+pub(super) fn student(estimates: &[f64]) -> (f64, f64) {
+    let n = estimates.len() as f64;
+    let mean = estimates.iter().sum::<f64>() / n;
+    let squares: f64 = estimates.iter().map(|x| (x - mean) * (x - mean)).sum();
+    (mean, T_QUANTILE * (squares / (n - 1.0) / n).sqrt())
+}
+
+/// A number that the expected count exceeds with less than 5 % probability when `hits` were
+/// counted: at least the exact bound for Poisson counts, which is 3.0 for none.
+pub(super) fn most_hits(hits: u64) -> f64 {
+    let k = hits as f64;
+    k + 1.645 * k.sqrt() + 3.0
+}

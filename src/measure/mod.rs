@@ -1,0 +1,11 @@
+//! Numbers: volume, and how much two solids differ, each with an interval that is true.
+
+mod compare;
+mod estimate;
+mod lattice;
+mod volume;
+
+pub use compare::{Comparison, Verdict, Worst, compare};
+pub use estimate::{Estimate, Method};
+pub use lattice::{Progress, Sampling};
+pub use volume::{volume, volume_with};

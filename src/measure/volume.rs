@@ -1,0 +1,97 @@
+//! Volume.
+
+use super::estimate::{Estimate, Method};
+use super::lattice::{
+    Beam, ENOUGH_HITS, Progress, Round, Sampling, Tally, most_hits, rounds, student,
+};
+use crate::scene::Scene;
+
+/// Chords of one solid.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Chords {
+    /// The sum of their lengths.
+    pub(super) length: f64,
+    /// How many rays have any.
+    pub(super) hits: u64,
+}
+
+impl Tally for Chords {
+    fn add(&mut self, later: Self) {
+        self.length += later.length;
+        self.hits += later.hits;
+    }
+}
+
+impl Chords {
+    /// Adds one ray's.
+    pub(super) fn add_ray(&mut self, length: f64) {
+        self.length += length;
+        self.hits += u64::from(length > 0.0);
+    }
+}
+
+/// The volume, in cubic model units, by lattices of rays parallel to the longest edge of
+/// the bounds.
+///
+/// Where fewer than ten rays of some lattice meet the solid the answer is *not resolved*:
+/// an upper bound instead of a spread that would be too small, or zero.
+///
+/// ```
+/// use solidray::{Scene, Solid, measure};
+///
+/// let ball = Scene::compile(&Solid::ball(3.0))?;
+/// let volume = measure::volume(&ball, &measure::Sampling::default());
+/// assert!((volume.value - 36.0 * std::f64::consts::PI).abs() < 1e-3 * volume.value);
+/// # Ok::<(), solidray::CompileError>(())
+/// ```
+pub fn volume(scene: &Scene, sampling: &Sampling) -> Estimate {
+    volume_with(scene, sampling, &|_| {})
+}
+
+/// [`volume`], which tells how it gets on.
+pub fn volume_with(
+    scene: &Scene,
+    sampling: &Sampling,
+    progress: Progress<'_>,
+) -> Estimate {
+    let bounds = scene.bounds();
+    if bounds.is_empty() {
+        return Estimate::exact(0.0);
+    }
+    let beam = Beam::new(bounds);
+    let (round, rays) = rounds(
+        &beam,
+        sampling,
+        progress,
+        || scene.tracer(),
+        |tracer, ray, chords: &mut Chords| {
+            chords.add_ray(tracer.spans(ray).iter().map(|span| span.length()).sum());
+        },
+        |round, rays| estimate(&beam, round, rays, sampling.rel_tol, |c| *c).target_met,
+    );
+    estimate(&beam, &round, rays, sampling.rel_tol, |chords| *chords)
+}
+
+/// The volume that goes with some of a round's chords.
+pub(super) fn estimate<T>(
+    beam: &Beam,
+    round: &Round<T>,
+    rays: u64,
+    rel_tol: f64,
+    chords: impl Fn(&T) -> Chords,
+) -> Estimate {
+    let chords: Vec<Chords> = round.replicates.iter().map(chords).collect();
+    let per_ray = beam.area() / round.size as f64;
+    let volumes: Vec<f64> = chords.iter().map(|c| c.length * per_ray).collect();
+    let (value, half_width) = student(&volumes);
+    let resolved = chords.iter().all(|c| c.hits >= ENOUGH_HITS);
+    let interval = if resolved {
+        [(value - half_width).max(0.0), value + half_width]
+    } else {
+        let hits = most_hits(chords.iter().map(|c| c.hits).sum());
+        let bound = beam.depth() * per_ray * hits / chords.len() as f64;
+        [0.0, bound.min(beam.depth() * beam.area())]
+    };
+    let target_met = resolved && half_width <= rel_tol * value;
+    Estimate { value, interval, rays, method: Method::Lattice, target_met, resolved }
+}

@@ -1,0 +1,90 @@
+//! Where samples lie: rank-1 lattices in the plane and random shifts of them.
+
+use glam::DVec2;
+
+/// A Fibonacci lattice: `n` points of the unit square, `n` a Fibonacci number and the
+/// generator the one before it.
+///
+/// Of all rank-1 lattices in the plane it is the most even (S. K. Zaremba, "Good lattice
+/// points, discrepancy, and numerical integration", Annali di Matematica 73, 1966).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Fibonacci {
+    n: u64,
+    generator: u64,
+}
+
+impl Fibonacci {
+    /// The lattice with at least this many points, up to 4 807 526 976 of them.
+    pub(crate) fn at_least(points: u64) -> Self {
+        /// The largest Fibonacci number whose products with its points fit 64 bits.
+        const LAST: u64 = 4_807_526_976;
+        let (mut generator, mut n) = (1, 2);
+        while n < points && n < LAST {
+            (generator, n) = (n, generator + n);
+        }
+        Self { n, generator }
+    }
+
+    /// How many points it has.
+    pub(crate) fn len(&self) -> u64 {
+        self.n
+    }
+
+    /// Point `i`, moved by `shift` on the torus.
+    pub(crate) fn point(&self, i: u64, shift: DVec2) -> DVec2 {
+        let other = (i % self.n) * self.generator % self.n;
+        let point = DVec2::new(i as f64, other as f64) / self.n as f64;
+        (point + shift).fract()
+    }
+}
+
+/// A number that looks random and depends on the seed and the indices alone: SplitMix64
+/// (G. L. Steele, D. Lea, C. H. Flood, "Fast Splittable Pseudorandom Number Generators",
+/// OOPSLA 2014), fed with one after the other.
+pub(crate) fn hash(seed: u64, indices: &[u64]) -> u64 {
+    indices.iter().fold(mix(seed), |h, &i| mix(h ^ mix(i)))
+}
+
+fn mix(x: u64) -> u64 {
+    let z = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
+/// A number in [0, 1) of 53 bits.
+pub(crate) fn unit(bits: u64) -> f64 {
+    (bits >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lattice_has_every_row_and_column_once() {
+        let lattice = Fibonacci::at_least(100);
+        assert_eq!(lattice.len(), 144);
+        let mut rows: Vec<f64> =
+            (0..144).map(|i| lattice.point(i, DVec2::ZERO).y).collect();
+        rows.sort_by(f64::total_cmp);
+        for (i, y) in rows.into_iter().enumerate() {
+            assert!((y - i as f64 / 144.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn the_largest_lattice_does_not_overflow() {
+        let lattice = Fibonacci::at_least(u64::MAX);
+        let p = lattice.point(lattice.len() - 1, DVec2::ZERO);
+        assert!(p.min_element() > 0.0 && p.max_element() < 1.0);
+    }
+
+    #[test]
+    fn units_are_in_range_and_differ() {
+        let units: Vec<f64> = (0..1000).map(|i| unit(hash(7, &[i, 3]))).collect();
+        assert!(units.iter().all(|u| (0.0..1.0).contains(u)));
+        let mean = units.iter().sum::<f64>() / 1000.0;
+        assert!((mean - 0.5).abs() < 0.05, "{mean}");
+    }
+}
