@@ -51,6 +51,13 @@ pub enum MeshError {
         /// The signed volume.
         volume: f64,
     },
+    /// The paths of an outline cross more often than can be worked out, or so close to
+    /// each other that rounded crossings make new ones.
+    #[error("the outline crosses itself too often: {points} points after cutting it")]
+    Tangled {
+        /// How many points it had after its edges were cut where they cross.
+        points: usize,
+    },
     /// More points or faces than indices can count.
     #[error("the mesh has {count} points or faces; at most {limit} fit")]
     TooLarge {

@@ -2,8 +2,11 @@
 //!
 //! A [`Mesh`] that exists is the boundary of a solid: [`Mesh::new`] checks and explains.
 
+mod build;
 mod check;
 mod error;
+mod fill;
+mod polygon;
 
 use glam::DVec3;
 

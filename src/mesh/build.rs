@@ -1,0 +1,82 @@
+//! Meshes from polygons, and outlines as prisms.
+
+use glam::{DVec2, DVec3};
+
+use super::{Mesh, MeshError, fill, polygon};
+
+impl Mesh {
+    /// A mesh of points and faces with three or more corners, each face the indices of
+    /// points counter-clockwise seen from outside.
+    ///
+    /// Faces may be concave and need not be planar; what a face that is not planar means
+    /// between its edges is not unique. Faces that touch or cross themselves still close
+    /// the mesh.
+    ///
+    /// ```
+    /// use glam::dvec3;
+    /// use solidray::Mesh;
+    ///
+    /// let points = vec![
+    ///     dvec3(0.0, 0.0, 0.0), dvec3(3.0, 0.0, 0.0), dvec3(3.0, 3.0, 0.0),
+    ///     dvec3(0.0, 3.0, 0.0), dvec3(0.0, 0.0, 2.0),
+    /// ];
+    /// let pyramid = [vec![3, 2, 1, 0], vec![0, 1, 4], vec![1, 2, 4], vec![2, 3, 4], vec![3, 0, 4]];
+    /// assert_eq!(Mesh::from_polygons(points, &pyramid)?.volume(), 6.0);
+    /// # Ok::<(), solidray::MeshError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The first fault found, in the order in which [`MeshError`] lists them.
+    pub fn from_polygons<F: AsRef<[u32]>>(
+        points: Vec<DVec3>,
+        faces: &[F],
+    ) -> Result<Self, MeshError> {
+        let mut triangles = Vec::with_capacity(faces.len());
+        for (face, corners) in faces.iter().map(AsRef::as_ref).enumerate() {
+            if let Some(&index) = corners.iter().find(|&&i| i as usize >= points.len()) {
+                let (index, count) = (u64::from(index), points.len());
+                return Err(MeshError::NoSuchPoint { face, index, count });
+            }
+            if corners.len() < 3 {
+                return Err(MeshError::TooFewCorners { face, corners: corners.len() });
+            }
+            triangles.extend(polygon::triangles(&points, corners));
+        }
+        Self::new(points, triangles)
+    }
+
+    /// The prism over an outline between two heights, `bottom` < `top`.
+    ///
+    /// Paths close themselves. A point belongs to the outline when it is within an odd
+    /// number of paths, whichever way they run: a path within another is a hole, a path
+    /// in that an island, a path drawn twice is nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError::NoFaces`] when the outline is empty, [`MeshError::NotFinite`], and
+    /// [`MeshError::Tangled`] when paths cross too often to be told apart.
+    pub fn prism(paths: &[Vec<DVec2>], bottom: f64, top: f64) -> Result<Self, MeshError> {
+        let fill::Fill { points: outline, triangles, boundary } = fill::even_odd(paths)?;
+        let Ok(lift) = u32::try_from(outline.len()) else {
+            let (count, limit) = (outline.len(), u32::MAX as usize);
+            return Err(MeshError::TooLarge { count, limit });
+        };
+        let level = |z: f64| outline.iter().map(move |p| p.extend(z));
+        let points: Vec<DVec3> = level(bottom).chain(level(top)).collect();
+        if u32::try_from(points.len()).is_err() {
+            let (count, limit) = (points.len(), u32::MAX as usize);
+            return Err(MeshError::TooLarge { count, limit });
+        }
+        let mut faces = Vec::with_capacity(2 * (triangles.len() + boundary.len()));
+        for [a, b, c] in triangles {
+            faces.push([c, b, a]);
+            faces.push([a + lift, b + lift, c + lift]);
+        }
+        for [a, b] in boundary {
+            faces.push([a, b, b + lift]);
+            faces.push([a, b + lift, a + lift]);
+        }
+        Self::new(points, faces)
+    }
+}
