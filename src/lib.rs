@@ -7,6 +7,7 @@ pub mod measure;
 mod mesh;
 mod op;
 mod ray;
+pub mod read;
 mod sampling;
 mod scene;
 pub mod shape;

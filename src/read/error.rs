@@ -1,0 +1,148 @@
+//! What can be wrong with a file.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::mesh::MeshError;
+use crate::solid::Place;
+
+/// Why a file could not be read, and where in it.
+#[derive(Debug, Error)]
+#[error("{}{}: {kind}", .path.display(), Colons(*.place))]
+pub struct ReadError {
+    /// The file.
+    pub path: PathBuf,
+    /// The place in it, where there is one.
+    pub place: Option<Place>,
+    /// What is wrong.
+    pub kind: ReadErrorKind,
+}
+
+/// What is wrong.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReadErrorKind {
+    /// The file cannot be opened or read.
+    #[error("cannot be read: {0}")]
+    Io(io::Error),
+    /// The name of the file does not tell its format.
+    #[error("the format is unknown; known are .csg, .scad, .obj, .stl and .off")]
+    UnknownFormat,
+    /// The file is longer than places in it can be counted.
+    #[error("the file has {0} bytes; at most 4294967295 are read")]
+    TooLong(usize),
+    /// The text breaks the grammar.
+    #[error("expected {expected}, found {found}")]
+    Syntax {
+        /// What may stand here.
+        expected: String,
+        /// What does.
+        found: String,
+    },
+    /// Something that is understood but not implemented.
+    #[error("{0} is not supported yet")]
+    Unsupported(String),
+    /// An argument of the wrong kind.
+    #[error("`{argument}` of `{node}` must be {expected}, not {found}")]
+    Argument {
+        /// What has the argument.
+        node: Box<str>,
+        /// The argument.
+        argument: Box<str>,
+        /// What it may be.
+        expected: Box<str>,
+        /// What it is.
+        found: Box<str>,
+    },
+    /// The text is no `.obj`.
+    #[error("{0}")]
+    Obj(tobj::LoadError),
+    /// The points and faces do not bound a solid.
+    #[error("{0}")]
+    Mesh(MeshError),
+    /// The curves would have more facets than a model can reasonably have.
+    #[error(
+        "the facets are too many: with this one the curves have {count} triangles, at most {limit} are made"
+    )]
+    TooManyFacets {
+        /// How many there would be.
+        count: u64,
+        /// How many there may be.
+        limit: u64,
+    },
+    /// A binary file that ends before it should.
+    #[error("the file declares {declared} triangles, but has bytes for {present}")]
+    Truncated {
+        /// How many triangles the file says it has.
+        declared: u64,
+        /// How many fit in it.
+        present: u64,
+    },
+    /// The whole model is flat.
+    #[error(
+        "the model is two-dimensional; wrap it in linear_extrude to give it a thickness"
+    )]
+    TwoDimensional,
+    /// An imported file is at fault.
+    #[error("import: {0}")]
+    Import(Box<ReadError>),
+    /// There is no program to convert `.scad`.
+    #[error("`{}` is needed to read .scad files, but was not found; install OpenSCAD (openscad.org, or `apt install openscad`) or export a .csg with it elsewhere", .program.display())]
+    OpenscadMissing {
+        /// The program that was looked for.
+        program: PathBuf,
+    },
+    /// OpenSCAD refused the file.
+    #[error("openscad could not convert it ({status}): {stderr}")]
+    OpenscadFailed {
+        /// How it ended.
+        status: String,
+        /// What it said.
+        stderr: String,
+    },
+}
+
+/// A fault at a place in a text whose name is known further up.
+#[derive(Debug)]
+pub(super) struct Located {
+    pub(super) place: Option<Place>,
+    pub(super) kind: ReadErrorKind,
+}
+
+impl Located {
+    pub(super) fn at(place: Place, kind: ReadErrorKind) -> Self {
+        Self { place: Some(place), kind }
+    }
+
+    pub(super) fn nowhere(kind: ReadErrorKind) -> Self {
+        Self { place: None, kind }
+    }
+
+    pub(super) fn syntax(
+        place: Place,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) -> Self {
+        let (expected, found) = (expected.into(), found.into());
+        Self::at(place, ReadErrorKind::Syntax { expected, found })
+    }
+
+    pub(super) fn named(self, path: &Path) -> ReadError {
+        ReadError { path: path.to_owned(), place: self.place, kind: self.kind }
+    }
+}
+
+/// A place as `:line:column`, or nothing.
+struct Colons(Option<Place>);
+
+impl fmt::Display for Colons {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(Place { line, column }) => write!(f, ":{line}:{column}"),
+            None => Ok(()),
+        }
+    }
+}

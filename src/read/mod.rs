@@ -1,0 +1,98 @@
+//! Text in, solid out: OpenSCAD's `.csg` and `.scad`, and meshes as `.obj`, `.stl`, `.off`.
+//!
+//! [`file`] and [`bytes`] are the doors. What a file says goes into a [`Model`]; what is
+//! wrong with it into a [`ReadError`] that names file, line and column. No bytes make a
+//! reader panic or use the stack in proportion to the input.
+//!
+//! To add a format: its reader in a file here, a variant and its endings in
+//! [`Format`](options::Format), an arm in [`bytes`].
+
+mod error;
+mod faces;
+mod model;
+mod obj;
+mod off;
+mod openscad;
+mod options;
+mod scad;
+mod stl;
+mod tessellate;
+mod words;
+
+use std::path::Path;
+
+use crate::solid::Solid;
+
+pub use error::{ReadError, ReadErrorKind};
+pub use model::{Counts, Model, Warning};
+pub use options::{Curves, Format, ReadOptions};
+
+use error::Located;
+use faces::Faces;
+
+/// Reads a file.
+///
+/// ```no_run
+/// use solidray::read::{self, ReadOptions};
+///
+/// let model = read::file("part.csg".as_ref(), &ReadOptions::default())?;
+/// for warning in &model.warnings {
+///     eprintln!("{warning}");
+/// }
+/// # Ok::<(), read::ReadError>(())
+/// ```
+///
+/// # Errors
+///
+/// What is wrong with the file, and where.
+pub fn file(path: &Path, options: &ReadOptions) -> Result<Model, ReadError> {
+    let named = |kind| Located::nowhere(kind).named(path);
+    let format = options.format.or_else(|| Format::of(path));
+    match format.ok_or_else(|| named(ReadErrorKind::UnknownFormat))? {
+        Format::Scad => scad::file(path, options),
+        format @ (Format::Csg | Format::Obj | Format::Stl | Format::Off) => {
+            let text = std::fs::read(path).map_err(|e| named(ReadErrorKind::Io(e)))?;
+            bytes(&text, path, format, options)
+        }
+    }
+}
+
+/// Reads what somebody else has loaded, such as standard input. The path is for messages,
+/// and what the text imports is looked for in its folder.
+///
+/// # Errors
+///
+/// What is wrong with the text, and where.
+pub fn bytes(
+    bytes: &[u8],
+    path: &Path,
+    format: Format,
+    options: &ReadOptions,
+) -> Result<Model, ReadError> {
+    match format {
+        Format::Csg => openscad::read(bytes, path, options),
+        Format::Scad => scad::bytes(bytes, path, options),
+        Format::Obj | Format::Stl | Format::Off => {
+            let found = mesh(bytes, format).and_then(Faces::build);
+            let built = found.map_err(|error| error.named(path))?;
+            let mut model = Model { solid: Solid::mesh(built.mesh), ..Model::default() };
+            if built.turned {
+                model.counts.turned = 1;
+                model
+                    .warnings
+                    .push(Warning { place: None, message: faces::TURNED.to_owned() });
+            }
+            Ok(model)
+        }
+    }
+}
+
+/// The points and faces of a mesh file.
+fn mesh(bytes: &[u8], format: Format) -> Result<Faces, Located> {
+    match format {
+        Format::Obj => obj::read(bytes),
+        Format::Stl => stl::read(bytes),
+        Format::Off => off::read(bytes),
+        Format::Csg | Format::Scad => Err(Located::nowhere(ReadErrorKind::UnknownFormat)),
+    }
+}

@@ -1,0 +1,53 @@
+//! What was read.
+
+use std::fmt;
+
+use crate::solid::{Place, Solid};
+
+/// A solid with what there is to say about its reading.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The solid; empty when the file describes nothing.
+    pub solid: Solid,
+    /// What was ignored or put right.
+    pub warnings: Vec<Warning>,
+    /// What was read as what.
+    pub counts: Counts,
+}
+
+impl Default for Model {
+    fn default() -> Self {
+        Self { solid: Solid::empty(), warnings: Vec::new(), counts: Counts::default() }
+    }
+}
+
+/// What was read as what.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Circles, cylinders and spheres read as true curves.
+    pub curves: usize,
+    /// Those with a small explicit `$fn`, read as the polygons they were meant to be.
+    pub polygons: usize,
+    /// Those read as polygons because [`Curves::Faceted`](super::Curves) asks for it.
+    pub faceted: usize,
+    /// Meshes that were inside out and have been turned.
+    pub turned: usize,
+}
+
+/// Something that was ignored or put right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// Where, if at a place in the text.
+    pub place: Option<Place>,
+    /// What.
+    pub message: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(Place { line, column }) = self.place {
+            write!(f, "{line}:{column}: ")?;
+        }
+        f.write_str(&self.message)
+    }
+}

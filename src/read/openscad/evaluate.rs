@@ -1,0 +1,124 @@
+//! Walks the statements and makes shapes from the leaves up.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::super::error::{Located, ReadErrorKind};
+use super::super::{Model, ReadOptions, Warning};
+use super::arguments::Call;
+use super::combine;
+use super::curve::Key;
+use super::node::{Node, Shape, node};
+use super::value::Document;
+use crate::mesh::Mesh;
+use crate::solid::{Place, Solid};
+
+/// What evaluation needs to know and gathers.
+#[derive(Debug)]
+pub(super) struct Reading<'a> {
+    pub(super) options: &'a ReadOptions,
+    /// The folder of the file, where imports are looked for.
+    pub(super) folder: &'a Path,
+    /// What was read so far, but for the solid.
+    pub(super) model: Model,
+    /// The faceted curves made so far, because models repeat their screws.
+    pub(super) curves: HashMap<Key, Arc<Mesh>>,
+    /// The triangles in them.
+    pub(super) facets: u64,
+    /// The files imported so far.
+    pub(super) imports: HashMap<PathBuf, Arc<Mesh>>,
+}
+
+impl Reading<'_> {
+    pub(super) fn warn(&mut self, place: Place, message: impl Into<String>) {
+        let message = message.into();
+        self.model.warnings.push(Warning { place: Some(place), message });
+    }
+}
+
+/// A statement whose braces are open.
+struct Frame {
+    node: Node,
+    statement: usize,
+    children: Vec<Shape>,
+}
+
+/// The model that a document describes.
+pub(super) fn model(
+    document: &Document<'_>,
+    path: &Path,
+    options: &ReadOptions,
+) -> Result<Model, Located> {
+    let mut reading = Reading {
+        options,
+        folder: path.parent().unwrap_or(Path::new("")),
+        model: Model::default(),
+        curves: HashMap::new(),
+        facets: 0,
+        imports: HashMap::new(),
+    };
+    let (next, end) = content(document);
+    let shapes = shapes(document, next, end, &mut reading)?;
+    let start = Place { line: 1, column: 1 };
+    reading.model.solid = match combine::all(shapes, "the file", start, &mut reading) {
+        Shape::Solid(solid) => solid,
+        Shape::Flat(_) => return Err(Located::nowhere(ReadErrorKind::TwoDimensional)),
+        Shape::Empty => Solid::empty(),
+    };
+    Ok(reading.model)
+}
+
+/// The statements to evaluate: all, or those of the first `!`.
+fn content(document: &Document<'_>) -> (usize, usize) {
+    let mut next = 0;
+    while let Some(statement) = document.statements.get(next) {
+        let end = statement.end as usize;
+        if statement.modifiers.disabled {
+            next = end;
+        } else if statement.modifiers.root {
+            return (next, end);
+        } else {
+            next += 1;
+        }
+    }
+    (0, document.statements.len())
+}
+
+/// The shapes of the outermost statements in a range.
+fn shapes(
+    document: &Document<'_>,
+    mut next: usize,
+    end: usize,
+    reading: &mut Reading<'_>,
+) -> Result<Vec<Shape>, Located> {
+    let mut outermost = Vec::new();
+    let mut open: Vec<Frame> = Vec::new();
+    loop {
+        let ends = |f: &mut Frame| document.statements[f.statement].end as usize <= next;
+        while let Some(frame) = open.pop_if(ends) {
+            let statement = &document.statements[frame.statement];
+            let parameters = frame.node.parameters;
+            let call = Call { document, statement, parameters };
+            call.warn_of_unknown(reading);
+            let shape = (frame.node.make)(&call, frame.children, reading)?;
+            let outer = open.last_mut().map_or(&mut outermost, |f| &mut f.children);
+            outer.push(shape);
+        }
+        if next >= end {
+            return Ok(outermost);
+        }
+        let statement = &document.statements[next];
+        // What takes no part in the model may be anything, even what cannot be read.
+        if statement.modifiers.disabled || statement.modifiers.background {
+            next = statement.end as usize;
+            continue;
+        }
+        let Some(node) = node(statement.name) else {
+            let kind = ReadErrorKind::Unsupported(format!("`{}`", statement.name));
+            return Err(Located::at(statement.place, kind));
+        };
+        open.push(Frame { node, statement: next, children: Vec::new() });
+        next += 1;
+    }
+}

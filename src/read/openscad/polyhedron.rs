@@ -1,0 +1,88 @@
+//! `polyhedron`.
+
+use glam::DVec3;
+
+use super::super::error::Located;
+use super::super::faces::{Faces, TURNED};
+use super::arguments::Call;
+use super::evaluate::Reading;
+use super::node::Shape;
+use crate::solid::Solid;
+
+/// Points, and faces clockwise seen from outside; faces that bound no solid are an error.
+pub(super) fn polyhedron(
+    call: &Call<'_>,
+    _: Vec<Shape>,
+    reading: &mut Reading<'_>,
+) -> Result<Shape, Located> {
+    let mut read = Faces::default();
+    for value in call.vector("points")?.unwrap_or_default() {
+        let point = call.document.numbers(value).map(DVec3::from_array);
+        let point = point.filter(|p| p.is_finite());
+        read.points.push(
+            point.ok_or_else(|| {
+                call.wrong("points", "triples of finite numbers", value)
+            })?,
+        );
+    }
+    let parameter = if call.value("faces").is_some() { "faces" } else { "triangles" };
+    for value in call.vector(parameter)?.unwrap_or_default() {
+        let mut face = chosen(call, parameter, value, read.points.len(), reading)?;
+        // OpenSCAD's faces are clockwise, ours counter-clockwise.
+        face.reverse();
+        if face.len() > 2 {
+            read.faces.push(face);
+        }
+    }
+    if read.faces.is_empty() {
+        return Ok(Shape::Empty);
+    }
+    let place = call.place();
+    let built = read.build().map_err(|e| Located::at(place, e.kind))?;
+    if built.turned {
+        reading.model.counts.turned += 1;
+        reading.warn(place, TURNED);
+    }
+    Ok(Shape::Solid(Solid::mesh(built.mesh).placed(place)))
+}
+
+/// The indices in a list that name points; others are dropped with a warning.
+pub(super) fn chosen(
+    call: &Call<'_>,
+    parameter: &str,
+    list: u32,
+    points: usize,
+    reading: &mut Reading<'_>,
+) -> Result<Vec<u32>, Located> {
+    let mut chosen = Vec::new();
+    let mut dropped = 0;
+    for value in call.elements(parameter, list)? {
+        let expected = "lists of the numbers of points";
+        let number = call.document.number(value);
+        let number = number.ok_or_else(|| call.wrong(parameter, expected, value))?;
+        match index(number, points) {
+            Some(index) => chosen.push(index),
+            None => dropped += 1,
+        }
+    }
+    if dropped > 0 {
+        let place = call.document.place(list);
+        let message = format!(
+            "`{}` names {dropped} points that do not exist; they are left out",
+            call.name()
+        );
+        reading.warn(place, message);
+    }
+    Ok(chosen)
+}
+
+/// A number as an index of so many points; fractions are cut off.
+fn index(number: f64, points: usize) -> Option<u32> {
+    let limit = u32::try_from(points).unwrap_or(u32::MAX);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the range is checked in the same line"
+    )]
+    (number > -1.0 && number < f64::from(limit)).then_some(number as u32)
+}

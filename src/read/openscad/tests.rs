@@ -1,0 +1,241 @@
+//! What trees mean, asked point by point, and the vertices of faceted curves.
+
+use std::path::Path;
+
+use glam::{DVec3, dvec3};
+
+use super::super::{Curves, Model, ReadOptions};
+use super::read;
+use crate::mesh::Mesh;
+use crate::op::Op;
+use crate::shape::Primitive;
+use crate::solid::{Kind, Solid};
+
+fn model(text: &str, curves: Curves) -> Model {
+    let options = ReadOptions { curves, ..ReadOptions::default() };
+    read(text.as_bytes(), Path::new("test.csg"), &options).unwrap()
+}
+
+/// Whether a point is inside, by the definitions and by recursion.
+fn contains(solid: &Solid, p: DVec3) -> bool {
+    let node = solid.node();
+    let mut children = node.children.iter();
+    match &node.kind {
+        Kind::Primitive(Primitive::Cuboid { min, max }) => {
+            p.cmpge(*min).all() && p.cmple(*max).all()
+        }
+        Kind::Primitive(Primitive::Quadric { profile, bottom, top }) => {
+            let [a, b, c] = profile.coefficients();
+            (*bottom..=*top).contains(&p.z)
+                && p.truncate().length_squared() <= (a * p.z + 2.0 * b) * p.z + c
+        }
+        Kind::Primitive(Primitive::HalfSpace { normal, offset }) => {
+            normal.dot(p) <= *offset
+        }
+        Kind::Mesh(mesh) => winding(mesh, p) > 0.5,
+        Kind::Boolean(Op::Union) => children.any(|c| contains(c, p)),
+        Kind::Boolean(Op::Intersection) => children.all(|c| contains(c, p)),
+        Kind::Boolean(Op::Difference) => {
+            children.next().is_some_and(|c| contains(c, p))
+                && !children.any(|c| contains(c, p))
+        }
+        Kind::Mapped(map) => {
+            contains(&node.children[0], map.inverse().transform_point3(p))
+        }
+        Kind::Tagged(_) => contains(&node.children[0], p),
+    }
+}
+
+/// The winding number as a sum of solid angles (A. van Oosterom, J. Strackee, "The solid
+/// angle of a plane triangle", 1983).
+fn winding(mesh: &Mesh, p: DVec3) -> f64 {
+    let angle = |f: &[u32; 3]| {
+        let [a, b, c] = f.map(|i| (mesh.points()[i as usize] - p).normalize());
+        let cosines = 1.0 + a.dot(b) + b.dot(c) + c.dot(a);
+        2.0 * a.dot(b.cross(c)).atan2(cosines)
+    };
+    mesh.faces().iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
+}
+
+/// The answers for points on the x-axis at 0.5, 1.5, 2.5 … slightly off the symmetry.
+fn row(text: &str) -> String {
+    let solid = model(text, Curves::Auto).solid;
+    (0..6)
+        .map(|i| contains(&solid, dvec3(f64::from(i) + 0.5, 0.03, 0.02)))
+        .map(|inside| if inside { '#' } else { '.' })
+        .collect()
+}
+
+/// The volume of the only mesh in a tree without maps.
+fn volume(text: &str) -> f64 {
+    let mut solid = model(text, Curves::Faceted).solid;
+    loop {
+        if let Kind::Mesh(mesh) = &solid.node().kind {
+            return mesh.volume();
+        }
+        let child = solid.node().children[0].clone();
+        solid = child;
+    }
+}
+
+const LONG: &str = "cube([6, 2, 2], center = true);";
+const BALL: &str = "sphere(r = 2, $fn = 0);";
+const NONE: &str = "cube(0);";
+
+#[test]
+fn operators_follow_openscad() {
+    let cases = [
+        (format!("{LONG} {BALL}"), "###..."),
+        (format!("difference() {{ {LONG} {BALL} }}"), "..#..."),
+        (format!("intersection() {{ {LONG} {BALL} }}"), "##...."),
+        (format!("difference() {{ {LONG} }}"), "###..."),
+        (format!("difference() {{ {NONE} {LONG} }}"), "......"),
+        (format!("difference() {{ {LONG} {NONE} }}"), "###..."),
+        (format!("difference() {{ group(); {LONG} }}"), "......"),
+        (format!("intersection() {{ {LONG} group(); }}"), "......"),
+        (format!("union() {{ group(); {BALL} }}"), "##...."),
+        (format!("difference() {{ %{LONG} {BALL} {LONG} }}"), "......"),
+        (
+            format!("difference() {{\n%\t\thull() {{ {LONG} }}\n{LONG} {BALL} }}"),
+            "..#...",
+        ),
+        (format!("intersection() {{ %{LONG} {BALL} }}"), "##...."),
+        (format!("difference() {{ {LONG} *{BALL} }}"), "###..."),
+        (format!("difference() {{ {LONG} #{BALL} }}"), "..#..."),
+        (format!("difference() {{ {LONG} !{BALL} }} {LONG}"), "##...."),
+        (format!("*group() {{ !{LONG} }} {BALL}"), "##...."),
+        (format!("render(convexity = 2) color([1, 0, 0]) {BALL}"), "##...."),
+        (
+            "sphere(r = -1); sphere(r = nan); cylinder(h = inf); square(0);".into(),
+            "......",
+        ),
+        (
+            format!("multmatrix([[1,0,0,3],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) {BALL}"),
+            ".####.",
+        ),
+        (
+            format!("multmatrix([[1,0,0,3],[0,1,0,0],[0,0,1,0],[0,0,0,2]]) {BALL}"),
+            ".#....",
+        ),
+        (
+            format!("multmatrix([[1,0,0,0],[0,0,0,0],[0,0,1,0],[0,0,0,1]]) {BALL}"),
+            "......",
+        ),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(row(&text), expected, "{text}");
+    }
+}
+
+#[test]
+fn plane_shapes_are_extruded() {
+    let flat = [
+        ("circle(r = 3);", "###..."),
+        ("difference() { square([10, 6], center = true); circle(r = 2); }", "..###."),
+        // 5 − (4 − (3 − 1)): the rings 1…3 and 4…5.
+        (
+            "difference() { circle(r = 5); difference() { circle(r = 4); \
+             difference() { circle(r = 3); circle(r = 1); } } }",
+            ".##.#.",
+        ),
+        ("intersection() { circle(r = 5); square(3); }", "###..."),
+        (
+            "multmatrix([[1,0,0,3],[0,1,0,0],[0,0,0,9],[0,0,0,1]]) circle(r = 2);",
+            ".####.",
+        ),
+        ("square(2, center = true); cube(9);", "#....."),
+        (
+            "polygon([[-1,-1],[6,-1],[6,1],[-1,1],[1,-.5],[1,.5],[3,.5],[3,-.5]], \
+          [[0,1,2,3],[4,5,6,7]]);",
+            "#..###",
+        ),
+    ];
+    for (text, expected) in flat {
+        let text = format!("linear_extrude(height = 4, center = true) {{ {text} }}");
+        assert_eq!(row(&text), expected, "{text}");
+    }
+    let ends = model("linear_extrude(height = 3) square(2);", Curves::Auto).solid;
+    for (z, inside) in [(-0.1, false), (0.1, true), (2.9, true), (3.1, false)] {
+        assert_eq!(contains(&ends, dvec3(1.0, 1.0, z)), inside, "at {z}");
+    }
+}
+
+#[test]
+fn dimensions_are_not_mixed() {
+    let read = model("difference() { cube(2); square(1); }", Curves::Auto);
+    assert!(contains(&read.solid, DVec3::splat(0.5)));
+    let message = "1:1: `difference` starts three-dimensional; 1 two-dimensional child \
+                   is ignored";
+    assert_eq!(read.warnings[0].to_string(), message);
+}
+
+#[test]
+fn faceted_curves_have_openscads_volumes() {
+    let close = |a: f64, b: f64| (a - b).abs() < 5e-6 * b;
+    assert!(close(volume("sphere(r = 10);"), 4112.86));
+    assert!((volume("sphere(r = 1);") - 2.402).abs() < 5e-4);
+    let ngon = |n: f64| 0.5 * n * (std::f64::consts::TAU / n).sin();
+    assert!(close(volume("cylinder(h = 2, r1 = 3, r2 = 3, $fn = 6);"), 18.0 * ngon(6.0)));
+    assert!(close(
+        volume("cylinder(h = 3, r1 = 2, r2 = 0, $fn = 7.9);"),
+        4.0 * ngon(7.0)
+    ));
+    assert!(close(volume("cylinder(h = 3, r1 = 0, r2 = 2, $fn = 1);"), 4.0 * ngon(3.0)));
+    assert!(close(volume("cylinder(h = 3, r1 = 1, r2 = 2);"), 7.0 * ngon(7.0)));
+}
+
+#[test]
+fn curves_are_what_the_options_ask_for() {
+    let text = "cylinder(r = 1, $fn = 6); cylinder(r = 1, $fn = 9); sphere(r = 5); \
+                linear_extrude(1) circle(r = 1, $fn = 8);";
+    for (curves, expected) in [
+        (Curves::Auto, [2, 2, 0]),
+        (Curves::Exact, [4, 0, 0]),
+        (Curves::Faceted, [0, 0, 4]),
+    ] {
+        let counts = model(text, curves).counts;
+        assert_eq!([counts.curves, counts.polygons, counts.faceted], expected);
+    }
+}
+
+#[test]
+fn equal_faceted_curves_share_a_mesh() {
+    let solid = model("sphere(r = 5); sphere(r = 5);", Curves::Faceted).solid;
+    let mesh = |i: usize| match &solid.node().children[i].node().children[0].node().kind {
+        Kind::Mesh(mesh) => mesh.clone(),
+        other => panic!("{other:?}"),
+    };
+    assert!(std::sync::Arc::ptr_eq(&mesh(0), &mesh(1)));
+}
+
+#[test]
+fn polyhedra_are_clockwise_and_put_right() {
+    let points = "[[0,0,0],[6,0,0],[0,6,0],[0,0,6]]";
+    let good = "[[0,1,2],[0,3,1],[1,3,2],[0,2,3]]";
+    let turned = "[[2,1,0],[1,3,0],[2,3,1],[3,2,0]]";
+    let clean = model(&format!("polyhedron({points}, {good});"), Curves::Auto);
+    assert!(clean.warnings.is_empty());
+    let put_right = model(&format!("polyhedron({points}, {turned});"), Curves::Auto);
+    assert_eq!(put_right.counts.turned, 1);
+    assert_eq!(
+        put_right.warnings[0].to_string(),
+        "1:1: the mesh was inside out and has been turned"
+    );
+    for text in [
+        format!("polyhedron(points = {points}, triangles = {good});"),
+        format!("polyhedron(points = {points}, faces = {turned});"),
+        format!(
+            "polyhedron(points = {points}, faces = [[0,1,1,9,2],[0,3,1,0],[1,3,2],[0,2,3]]);"
+        ),
+        // Every face with points of its own.
+        "polyhedron(points = [[0,0,0],[6,0,0],[0,6,0],[0,0,0],[0,0,6],[6,0,0],[6,0,0],\
+         [0,0,6],[0,6,0],[-0,0,0],[0,6,0],[0,0,6]], \
+         faces = [[0,1,2],[3,4,5],[6,7,8],[9,10,11]]);"
+            .to_owned(),
+    ] {
+        assert_eq!(volume(&text), 36.0, "{text}");
+    }
+    for text in ["polyhedron();", "polyhedron(points = [], faces = []);"] {
+        assert_eq!(row(text), "......");
+    }
+}

@@ -1,0 +1,107 @@
+//! `multmatrix` and `color`.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::super::error::Located;
+use super::arguments::Call;
+use super::combine;
+use super::evaluate::Reading;
+use super::node::Shape;
+use crate::color::Color;
+
+/// The children under an affine map. Of a plane shape only x and y are mapped. A matrix
+/// that flattens (scale 0) or is not finite makes nothing, with a warning: OpenSCAD
+/// leaves a shell without volume in the first case, which is no solid.
+pub(super) fn multmatrix(
+    call: &Call<'_>,
+    children: Vec<Shape>,
+    reading: &mut Reading<'_>,
+) -> Result<Shape, Located> {
+    let map = matrix(call)?;
+    let map = match combine::union(call, children, reading)? {
+        Shape::Empty => return Ok(Shape::Empty),
+        Shape::Solid(solid) => (map, Shape::Solid(solid)),
+        Shape::Flat(prism) => (plane(map), Shape::Flat(prism)),
+    };
+    if !is_regular(&map.0) {
+        let message = "the matrix is singular or not finite; what it maps is left out";
+        reading.warn(call.place(), message);
+        return Ok(Shape::Empty);
+    }
+    Ok(match map {
+        (map, shape) if map == DAffine3::IDENTITY => shape,
+        (map, Shape::Solid(solid)) => Shape::Solid(solid.mapped(map)),
+        (map, Shape::Flat(prism)) => Shape::Flat(prism.mapped(map)),
+        (_, Shape::Empty) => Shape::Empty,
+    })
+}
+
+/// The matrix argument. Rows or elements left out are those of the identity; the last row
+/// can only divide the others, as OpenSCAD has no perspective.
+fn matrix(call: &Call<'_>) -> Result<DAffine3, Located> {
+    let mut rows = [[0.0; 4]; 4];
+    for (i, row) in rows.iter_mut().enumerate() {
+        row[i] = 1.0;
+    }
+    for (i, row) in call.vector("m")?.unwrap_or_default().into_iter().take(4).enumerate()
+    {
+        for (j, value) in call.elements("m", row)?.into_iter().take(4).enumerate() {
+            let number = call.document.number(value);
+            rows[i][j] =
+                number.ok_or_else(|| call.wrong("m", "a matrix of numbers", value))?;
+        }
+    }
+    let w = rows[3][3];
+    let column = |j: usize| DVec3::new(rows[0][j], rows[1][j], rows[2][j]) / w;
+    Ok(DAffine3 {
+        matrix3: DMat3::from_cols(column(0), column(1), column(2)),
+        translation: column(3),
+    })
+}
+
+/// The part of a map that acts on the plane z = 0 within it.
+fn plane(map: DAffine3) -> DAffine3 {
+    let DAffine3 { matrix3, translation } = map;
+    DAffine3 {
+        matrix3: DMat3::from_cols(
+            matrix3.x_axis.with_z(0.0),
+            matrix3.y_axis.with_z(0.0),
+            DVec3::Z,
+        ),
+        translation: translation.with_z(0.0),
+    }
+}
+
+/// Whether a map is finite and flattens nothing. Columns are scaled to size 1 before
+/// their determinant is taken, so that neither huge nor tiny scales pass for singular.
+fn is_regular(map: &DAffine3) -> bool {
+    let axes = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
+    let [x, y, z] = axes.map(|axis| axis / axis.abs().max_element());
+    let determinant = DMat3::from_cols(x, y, z).determinant();
+    map.is_finite() && determinant.is_finite() && determinant != 0.0
+}
+
+/// The children in a colour. OpenSCAD prints one with −1 where none was given.
+pub(super) fn color(
+    call: &Call<'_>,
+    children: Vec<Shape>,
+    reading: &mut Reading<'_>,
+) -> Result<Shape, Located> {
+    let shape = combine::union(call, children, reading)?;
+    let Some(value) = call.value("c") else { return Ok(shape) };
+    let rgb: Option<[f64; 3]> = call.document.numbers(value);
+    let expected = "a vector of 3 or 4 numbers";
+    let [r, g, b] = rgb.ok_or_else(|| call.wrong("c", expected, value))?;
+    if [r, g, b].into_iter().any(|part| part.is_nan() || part < 0.0) {
+        return Ok(shape);
+    }
+    let own = call.document.numbers(value).map(|[_, _, _, a]: [f64; 4]| a);
+    let alpha = call.number("alpha")?.or(own).unwrap_or(1.0);
+    #[expect(clippy::cast_possible_truncation, reason = "colours have few digits")]
+    let color = Color { rgba: [r, g, b, alpha].map(|part| part as f32) };
+    Ok(match shape {
+        Shape::Empty => Shape::Empty,
+        Shape::Flat(prism) => Shape::Flat(prism.colored(color)),
+        Shape::Solid(solid) => Shape::Solid(solid.colored(color)),
+    })
+}

@@ -1,0 +1,57 @@
+//! What a caller can choose.
+
+use std::path::{Path, PathBuf};
+
+/// How to read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// What becomes of OpenSCAD's circles, cylinders and spheres.
+    pub curves: Curves,
+    /// The program that converts `.scad`; `openscad`, found on `PATH`, when there is none.
+    pub openscad: Option<PathBuf>,
+    /// The format; when there is none, the file's name tells.
+    pub format: Option<Format>,
+}
+
+/// What becomes of OpenSCAD's circles, cylinders and spheres, which it defines as
+/// polygons and polyhedra of `$fn` sides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Curves {
+    /// An explicit `$fn` up to 8 is taken as meant (a nut trap is a hexagon) and makes
+    /// OpenSCAD's polygon; all others are true curves. Fractions of `$fn` are cut off.
+    #[default]
+    Auto,
+    /// True curves throughout.
+    Exact,
+    /// The vertices of OpenSCAD 2021.01 throughout.
+    Faceted,
+}
+
+/// The formats that can be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// OpenSCAD's evaluated tree.
+    Csg,
+    /// OpenSCAD's language, converted by the installed program.
+    Scad,
+    /// Wavefront's mesh format.
+    Obj,
+    /// Stereolithography, as text or binary.
+    Stl,
+    /// The object file format of Geomview.
+    Off,
+}
+
+impl Format {
+    /// The format that the ending of a file's name stands for.
+    pub fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "csg" => Some(Self::Csg),
+            "scad" => Some(Self::Scad),
+            "obj" => Some(Self::Obj),
+            "stl" => Some(Self::Stl),
+            "off" => Some(Self::Off),
+            _ => None,
+        }
+    }
+}

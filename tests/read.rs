@@ -1,0 +1,443 @@
+//! Reading: what is refused and how it is said, depth, garbage, mesh formats, `.scad`.
+
+use std::path::{Path, PathBuf};
+
+use proptest::prelude::*;
+use solidray::read::{
+    self, Curves, Format, Model, ReadError, ReadErrorKind, ReadOptions,
+};
+
+fn bytes(text: impl AsRef<[u8]>, format: Format) -> Result<Model, ReadError> {
+    read::bytes(text.as_ref(), Path::new("part.x"), format, &ReadOptions::default())
+}
+
+fn csg(text: &str) -> Model {
+    bytes(text, Format::Csg).unwrap()
+}
+
+fn refused(text: impl AsRef<[u8]>, format: Format) -> String {
+    bytes(text, format).unwrap_err().to_string()
+}
+
+/// A Debug text says what the topmost node is.
+fn is_empty(model: &Model) -> bool {
+    format!("{:?}", model.solid) == "Solid(Boolean(Union), 0 children)"
+}
+
+#[test]
+fn the_grammar_is_wider_than_what_openscad_prints() {
+    for text in [
+        "",
+        " \t\r\n // nothing\n/* at * all */",
+        "\u{feff}group();",
+        ";;group(){;}",
+        "%\t\tgroup() {\n\t}\n",
+        "group() group() ;",
+        "*#group();",
+        "!group();",
+        "cube(size = [1e-07, 3.33333e+9, -0, ], center = false,);",
+        "cube([-inf, nan, +.5]);",
+        "sphere(r = - - -1e0);",
+        "polygon(points = [], paths = undef, convexity = 1);",
+        "render(convexity=2);",
+        "*text(\"a \\\" \\\\ \u{e9}\", [[[]], true, false, undef], x = -1);",
+    ] {
+        let model = csg(text);
+        assert!(is_empty(&model), "{text}");
+        assert!(model.warnings.is_empty(), "{text}: {:?}", model.warnings);
+    }
+    // Strings that are not UTF-8 are no reason to refuse a file.
+    let latin = bytes(b"%text(\"\xe9\xff\"); cube(1);", Format::Csg).unwrap();
+    assert!(!is_empty(&latin));
+}
+
+#[test]
+fn refused_csg_is_located() {
+    let numbers = "a number or a vector of 3 numbers";
+    for (text, expected) in [
+        ("cube(1)", ":1:8: expected `;`, `{` or a statement, found the end of the file"),
+        (
+            "group() {\n\tcube(1);\n",
+            ":3:1: expected a statement or `}`, found the end of the file",
+        ),
+        ("cube(1);\n}", ":2:1: expected a statement, found `}`"),
+        ("cube(1); x = 3;", ":1:12: expected `(`, found `=`"),
+        ("cube(size 1);", ":1:11: expected `=`, found `1`"),
+        ("cube(1 2);", ":1:8: expected `,` or `)`, found `2`"),
+        ("cube([1 2]);", ":1:9: expected `,` or `]`, found `2`"),
+        ("cube([1:2]);", ":1:8: expected `,` or `]`, found `:`"),
+        ("cube([,]);", ":1:7: expected a value, found `,`"),
+        ("cube(size = PI);", ":1:13: expected a value, found `PI`"),
+        ("cube(-true);", ":1:7: expected a number, found `true`"),
+        ("cube(1.2.3);", ":1:6: expected a number, found `1.2.3`"),
+        ("cube(1e);", ":1:6: expected a number, found `1e`"),
+        ("cube(\"a", ":1:6: expected `\"`, found a string that does not end"),
+        ("/* cube(1);", ":1:1: expected `*/`, found a comment that does not end"),
+        ("*;", ":1:2: expected a statement, found `;`"),
+        ("/* ü */ é();", ":1:9: expected a statement, found `é`"),
+        ("group() {\n\thull() { cube(1); }\n}", ":2:2: `hull` is not supported yet"),
+        (
+            "linear_extrude(height = 1, twist = 9) square(1);",
+            ":1:1: `linear_extrude` with `twist` is not supported yet",
+        ),
+        (
+            "linear_extrude(height = 1, scale = [1, 0]) square(1);",
+            ":1:1: `linear_extrude` with `scale` is not supported yet",
+        ),
+        ("import(\"a.dxf\");", ":1:1: import of `.dxf` files is not supported yet"),
+        (
+            "cube(size = true);",
+            &format!(":1:13: `size` of `cube` must be {numbers}, not true"),
+        ),
+        (
+            "cube([1, 2]);",
+            &format!(":1:6: `size` of `cube` must be {numbers}, not a vector of 2"),
+        ),
+        (
+            "cube(1, center = \"yes\");",
+            ":1:18: `center` of `cube` must be true or false, not the string `yes`",
+        ),
+        (
+            "sphere(r = [1]);",
+            ":1:12: `r` of `sphere` must be a number, not a vector of 1",
+        ),
+        (
+            "polyhedron([[0, 0, undef]], [[0, 0, 0]]);",
+            ":1:13: `points` of `polyhedron` must be triples of finite numbers, not a vector of 3",
+        ),
+        (
+            "polygon([[0, nan]]);",
+            ":1:10: `points` of `polygon` must be pairs of finite numbers, not a vector of 2",
+        ),
+        (
+            "polyhedron(points = [[0, 0, 0]], faces = 3);",
+            ":1:42: `faces` of `polyhedron` must be a vector, not 3",
+        ),
+        (
+            "square(1);",
+            ": the model is two-dimensional; wrap it in linear_extrude to give it a thickness",
+        ),
+        (
+            "\n  polyhedron([[0,0,0],[1,0,0],[0,1,0]], [[0,1,2]]);",
+            ":2:3: the mesh is not closed and oriented: 3 edges without the neighbour that \
+             runs the other way, first 1–0 from (1, 0, 0) to (0, 0, 0); 0–2 from (0, 0, 0) \
+             to (0, 1, 0); 2–1 from (0, 1, 0) to (1, 0, 0)",
+        ),
+    ] {
+        assert_eq!(refused(text, Format::Csg), format!("part.x{expected}"), "{text}");
+    }
+    let faceted = ReadOptions { curves: Curves::Faceted, ..ReadOptions::default() };
+    let text = b"sphere(r = 1, $fn = 1e9);";
+    let error = read::bytes(text, Path::new("a.csg"), Format::Csg, &faceted).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "a.csg:1:1: the facets are too many: with this one the curves have \
+         1000000000000000000 triangles, at most 30000000 are made"
+    );
+}
+
+#[test]
+fn what_is_ignored_is_said() {
+    let texts = |text: &str| {
+        csg(text).warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        texts("cube(1, colour = 3);"),
+        ["1:9: `cube` has no argument `colour`; this one is ignored"]
+    );
+    assert_eq!(
+        texts("group(3);"),
+        ["1:7: `group` has only 0 arguments without a name; this one is ignored"]
+    );
+    assert_eq!(
+        texts("multmatrix([[0,0,0,0]]) cube(1);"),
+        ["1:1: the matrix is singular or not finite; what it maps is left out"]
+    );
+    assert_eq!(
+        texts("linear_extrude(height = 1) cube(1);"),
+        ["1:1: `linear_extrude` ignores three-dimensional children"]
+    );
+    assert_eq!(
+        texts("polygon([[0,0],[1,0],[0,1]], [[0, 1, 7, -1]]);"),
+        ["1:31: `polygon` names 2 points that do not exist; they are left out"]
+    );
+}
+
+#[test]
+fn depth_costs_no_stack() {
+    let depth = 1_000_000;
+    for open in ["group() {", "difference() {", "multmatrix([[2,0,0,0]]) {", "union() "] {
+        let close = if open.ends_with('{') { "}" } else { "" };
+        let text = format!("{}cube(1);{}", open.repeat(depth), close.repeat(depth));
+        assert!(!is_empty(&csg(&text)), "{open}");
+    }
+    let vector = format!("cube({}{});", "[".repeat(depth), "]".repeat(depth));
+    assert!(refused(vector, Format::Csg).contains("not a vector of 1"));
+    assert!(refused("[".repeat(depth), Format::Csg).contains("found `[`"));
+    assert!(refused("group(){".repeat(depth), Format::Csg).contains("end of the file"));
+}
+
+const TETRAHEDRON: &str = "v 0 0 0\nv 6 0 0\nv 0 6 0\nv 0 0 6\n";
+
+#[test]
+fn mesh_formats_are_read() {
+    let obj =
+        format!("{TETRAHEDRON}f 3 2 1\nf 1/1 2/2/2 4//4\nf -3 -2 -1\nf 1 4 3 # end\n");
+    let off = "OFF # tetrahedron\n4 4 6\n0 0 0\n6 0 0\n0 6 0\n0 0 6\n\
+               3 2 1 0\n3 0 1 3 255 0 0\n3 1 2 3\n3 0 3 2\n";
+    for (text, format) in [(obj.as_str(), Format::Obj), (off, Format::Off)] {
+        let model = bytes(text, format).unwrap();
+        assert_eq!(model.counts.turned, 0);
+        assert!(!is_empty(&model));
+    }
+    let inside_out = format!("{TETRAHEDRON}f 1 2 3\nf 4 2 1\nf 4 3 2\nf 3 4 1\n");
+    let turned = bytes(inside_out, Format::Obj).unwrap();
+    assert_eq!(turned.counts.turned, 1);
+    assert_eq!(turned.warnings[0].message, "the mesh was inside out and has been turned");
+}
+
+/// The triangles of a tetrahedron.
+fn triangles() -> [[[f32; 3]; 3]; 4] {
+    let p = [[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 6.0]];
+    [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]].map(|f| f.map(|i| p[i]))
+}
+
+fn binary_stl(header: &[u8]) -> Vec<u8> {
+    let mut file = header.to_vec();
+    file.resize(80, b' ');
+    file.extend(4_u32.to_le_bytes());
+    for triangle in triangles() {
+        file.extend([0; 12]);
+        for x in triangle.iter().flatten() {
+            file.extend(x.to_le_bytes());
+        }
+        file.extend([0; 2]);
+    }
+    file
+}
+
+#[test]
+fn stl_is_read_as_text_and_binary() {
+    let mut text = "solid a b\n".to_owned();
+    for triangle in triangles() {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for [x, y, z] in triangle {
+            text += &format!("vertex {x} {y} {z:e}\n");
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text += "endsolid a b\n";
+    for file in [text.clone().into_bytes(), binary_stl(b"x"), binary_stl(b"solid x")] {
+        assert!(!is_empty(&bytes(file, Format::Stl).unwrap()));
+    }
+    let mut short = binary_stl(b"");
+    short[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+    assert_eq!(
+        refused(short, Format::Stl),
+        "part.x: the file declares 4294967295 triangles, but has bytes for 4"
+    );
+    assert_eq!(
+        refused("cube", Format::Stl),
+        "part.x: expected `solid` or the head of a binary file, found 4 bytes"
+    );
+    let broken = text.replacen("vertex 6", "vertex six", 1);
+    assert_eq!(
+        refused(broken, Format::Stl),
+        "part.x:6:8: expected a number, found `six`"
+    );
+    assert_eq!(refused("solid\nendsolid", Format::Stl), "part.x: the mesh has no faces");
+}
+
+#[test]
+fn refused_meshes_are_located() {
+    for (text, format, expected) in [
+        ("v 1 2", Format::Obj, ":1:6: expected a number, found the end of the line"),
+        ("v 1 2 x", Format::Obj, ":1:7: expected a number, found `x`"),
+        ("f 1 2", Format::Obj, ":1:1: expected a face of three or more corners, found 2"),
+        (
+            "v 1 2 3\nf 0 1 1",
+            Format::Obj,
+            ":2:3: expected the number of a point, found `0`",
+        ),
+        (
+            "v 1 2 3\nf 1 1 2",
+            Format::Obj,
+            ": face 0 names point 1, but there are 1 points",
+        ),
+        ("v 1 2 3", Format::Obj, ": the mesh has no faces"),
+        ("COFF 1 2 3", Format::Off, ":1:1: the format `COFF` is not supported yet"),
+        ("PLY", Format::Off, ":1:1: expected `OFF`, found `PLY`"),
+        (
+            "OFF 9999999 9 9\n0 0",
+            Format::Off,
+            ":2:4: expected a number, found the end of the file",
+        ),
+        ("OFF 0 1 0\n3 0 -1 2", Format::Off, ":2:5: expected a count, found `-1`"),
+    ] {
+        assert_eq!(refused(text, format), format!("part.x{expected}"), "{text}");
+    }
+}
+
+#[test]
+fn files_and_imports_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("a b.STL"), binary_stl(b"")).unwrap();
+    std::fs::write(path("bad.off"), "OFF\n0 0 x").unwrap();
+    let read = |name: &str, text: &str| {
+        std::fs::write(path(name), text).unwrap();
+        read::file(&path(name), &ReadOptions::default())
+    };
+    let model = read("a.csg", "import(file = \"a b.STL\", timestamp = 1);").unwrap();
+    assert!(!is_empty(&model));
+    let start = folder.path().display();
+    let error = read("a.csg", "\nimport(\"bad.off\");").unwrap_err();
+    let expected = "expected a count, found `x`";
+    assert_eq!(
+        error.to_string(),
+        format!("{start}/a.csg:2:1: import: {start}/bad.off:2:5: {expected}")
+    );
+    let error = read("a.csg", "import(\"none.off\");").unwrap_err().to_string();
+    let expected =
+        format!("{start}/a.csg:1:1: import: {start}/none.off: cannot be read: ");
+    assert!(error.starts_with(&expected), "{error}");
+    assert_eq!(
+        read("a.step", "").unwrap_err().to_string(),
+        format!(
+            "{start}/a.step: the format is unknown; known are .csg, .scad, .obj, .stl and .off"
+        )
+    );
+}
+
+#[test]
+fn scad_goes_through_openscad() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("part.scad");
+    let text = "echo(\"hello\"); if ($preview) hull() cube(1); else import(\"m.off\");";
+    std::fs::write(&path, text).unwrap();
+    let mesh =
+        "OFF 4 4 0\n0 0 0\n6 0 0\n0 6 0\n0 0 6\n3 2 1 0\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+    std::fs::write(folder.path().join("m.off"), mesh).unwrap();
+
+    let missing = PathBuf::from("/nowhere/openscad");
+    let options = ReadOptions { openscad: Some(missing), ..ReadOptions::default() };
+    let error = read::file(&path, &options).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        format!(
+            "{}: `/nowhere/openscad` is needed to read .scad files, but was not found; \
+             install OpenSCAD (openscad.org, or `apt install openscad`) or export a .csg \
+             with it elsewhere",
+            path.display()
+        )
+    );
+
+    let options = ReadOptions::default();
+    let model = match read::file(&path, &options) {
+        // There is nothing to test without the program.
+        Err(ReadError { kind: ReadErrorKind::OpenscadMissing { .. }, .. }) => return,
+        other => other.unwrap(),
+    };
+    assert!(!is_empty(&model));
+    assert!(model.warnings.iter().any(|w| w.message.contains("hello")));
+    let model = read::bytes(text.as_bytes(), &path, Format::Scad, &options).unwrap();
+    assert!(!is_empty(&model));
+    let error = read::bytes(b"cube(", &path, Format::Scad, &options).unwrap_err();
+    assert!(error.to_string().contains("openscad could not convert it"), "{error}");
+    let error =
+        read::bytes(b"hull() cube(1);", &path, Format::Scad, &options).unwrap_err();
+    let error = error.to_string();
+    assert!(
+        error.ends_with("part.scad as .csg:1:1: `hull` is not supported yet"),
+        "{error}"
+    );
+}
+
+/// Pieces of the language in any order.
+fn pieces() -> impl Strategy<Value = String> {
+    let piece = prop::sample::select(vec![
+        "cube",
+        "sphere",
+        "cylinder",
+        "polyhedron",
+        "polygon",
+        "circle",
+        "square",
+        "group",
+        "union",
+        "difference",
+        "intersection",
+        "multmatrix",
+        "linear_extrude",
+        "color",
+        "(",
+        ")",
+        "{",
+        "}",
+        "[",
+        "]",
+        ",",
+        ";",
+        "=",
+        "-",
+        "1",
+        "2.5",
+        "1e308",
+        "-1",
+        "inf",
+        "nan",
+        "undef",
+        "true",
+        "\"a\"",
+        "points",
+        "faces",
+        "paths",
+        "$fn",
+        "r",
+        "h",
+        "%",
+        "*",
+        "!",
+        "#",
+        " ",
+        "\n",
+        "//",
+        "/*",
+        "*/",
+        "();",
+        "(1);",
+        "(){",
+        "[[0,0],[1,0],[0,1]]",
+        "[0,1,2]",
+        "[[0,1,2]]",
+        "height=1",
+        "([[0,0],[4,4],[4,0],[0,4]]);",
+    ]);
+    prop::collection::vec(piece, 0..40).prop_map(|pieces| pieces.concat())
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_make_a_reader_panic(garbage in prop::collection::vec(any::<u8>(), 0..300)) {
+        for format in [Format::Csg, Format::Obj, Format::Stl, Format::Off] {
+            let _ = bytes(&garbage, format);
+        }
+        let _ = bytes([b"solid ", &garbage[..]].concat(), Format::Stl);
+        let _ = bytes([b"OFF ", &garbage[..]].concat(), Format::Off);
+        let _ = bytes([b"cube(\"", &garbage[..]].concat(), Format::Csg);
+    }
+
+    #[test]
+    fn no_words_make_a_reader_panic(text in pieces()) {
+        for format in [Format::Csg, Format::Obj, Format::Stl, Format::Off] {
+            let _ = bytes(&text, format);
+        }
+        let options = ReadOptions { curves: Curves::Faceted, ..ReadOptions::default() };
+        let _ = read::bytes(text.as_bytes(), Path::new("a"), Format::Csg, &options);
+    }
+
+    #[test]
+    fn cut_files_are_refused_or_read(cut in 0_usize..284) {
+        let _ = bytes(&binary_stl(b"solid")[..cut], Format::Stl);
+    }
+}
