@@ -1,7 +1,64 @@
 //! Constructive solid geometry by rays.
+//!
+//! A solid is a tree of quadrics, boxes and closed meshes under affine maps, combined by
+//! union, intersection and difference. Nothing is ever meshed: the only geometric operation
+//! is a ray, whose answer is the exact list of stretches inside the solid. Pictures,
+//! volumes and membership are built on that.
+//!
+//! # Three stages
+//!
+//! A [`Solid`] is what you say: sizes, maps, operators. [`Scene::compile`] checks it and
+//! makes it ready; after that no query can fail. A [`Tracer`] is the scratch memory of one
+//! thread, and answers.
+//!
+//! ```
+//! use glam::{DVec3, dvec3};
+//! use solidray::{Ray, Scene, Solid, measure};
+//!
+//! // A plate with a countersunk hole.
+//! let plate = Solid::cuboid_between(dvec3(-20.0, -10.0, 0.0), dvec3(20.0, 10.0, 5.0));
+//! let hole = Solid::cylinder(3.0, 7.0).translated(dvec3(0.0, 0.0, -1.0));
+//! let sink = Solid::frustum_between(3.0, 6.0, 2.0, 5.0);
+//! let part = plate - (hole + sink);
+//!
+//! let scene = Scene::compile(&part)?;
+//! assert!(scene.contains(dvec3(10.0, 0.0, 2.5)));
+//! assert!(!scene.contains(dvec3(0.0, 0.0, 2.5)));
+//!
+//! // Along the middle of the plate, one millimetre above its bottom.
+//! let ray = Ray::new(dvec3(-100.0, 0.0, 1.0), DVec3::X);
+//! let spans: Vec<[f64; 2]> =
+//!     scene.tracer().spans(&ray).iter().map(|s| [s.enter.t, s.exit.t]).collect();
+//! assert_eq!(spans, [[80.0, 97.0], [103.0, 120.0]]);
+//!
+//! // 4000 less a cylinder of 2 π 9 and a frustum of 3 π (9 + 18 + 36) / 3.
+//! let volume = measure::volume(&scene, &measure::Sampling::default());
+//! let exact = 4000.0 - 81.0 * std::f64::consts::PI;
+//! assert!((volume.value - exact).abs() < 2.0 * volume.half_width());
+//! # Ok::<(), solidray::CompileError>(())
+//! ```
+//!
+//! # Files
+//!
+//! [`read::file`] takes OpenSCAD's `.csg` and `.scad` and the mesh formats `.obj`, `.stl`
+//! and `.off`.
+//!
+//! # Numbers
+//!
+//! Coordinates are `f64`. Lengths are whatever unit the model uses, millimetres by
+//! OpenSCAD's custom; angles are radians unless a name ends in `_deg`. The Boolean algebra
+//! has no tolerance: crossings at the same `t` are toggled together, and a boundary is
+//! reported only where the solid's inside changes.
+//!
+//! # Features
+//!
+//! All are on by default. `parallel` uses all cores in [`measure`] and [`render`], with the
+//! same results to the last bit; `image` shades pictures; `cli` is the program. Users of the
+//! library alone take `default-features = false`.
 
 mod aabb;
 mod bvh;
+mod census;
 mod color;
 pub mod measure;
 mod mesh;
@@ -14,9 +71,10 @@ pub mod shape;
 mod solid;
 
 pub use aabb::Aabb;
+pub use census::Census;
 pub use color::Color;
 pub use mesh::{Mesh, MeshError, OpenEdge};
 pub use op::Op;
 pub use ray::{Crossing, Ray, Sense, Span};
 pub use scene::{CompileError, Leaf, LeafName, Part, Scene, Tracer};
-pub use solid::{Place, Solid};
+pub use solid::{Place, Solid, View};

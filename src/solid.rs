@@ -60,6 +60,36 @@ pub struct Place {
     pub column: u32,
 }
 
+/// One node of a tree, for those who walk it: to count, to export, to check.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum View<'a> {
+    /// A leaf given by a formula.
+    Primitive(&'a Primitive),
+    /// A leaf given by a mesh.
+    Mesh(&'a Arc<Mesh>),
+    /// An operator and its operands.
+    Boolean(Op, &'a [Solid]),
+    /// A map from the child's frame to the parent's, and the child.
+    Mapped(&'a DAffine3, &'a Solid),
+    /// A name, a colour or a place, which changes no shape, and what it is given to.
+    Tagged(&'a Solid),
+}
+
+impl Solid {
+    /// The topmost node. Trees can be deep: walk them with a list of what is left.
+    pub fn view(&self) -> View<'_> {
+        let Node { kind, children } = self.node();
+        match kind {
+            Kind::Primitive(primitive) => View::Primitive(primitive),
+            Kind::Mesh(mesh) => View::Mesh(mesh),
+            Kind::Boolean(op) => View::Boolean(*op, children),
+            Kind::Mapped(map) => View::Mapped(map, &children[0]),
+            Kind::Tagged(_) => View::Tagged(&children[0]),
+        }
+    }
+}
+
 /// # Leaves
 impl Solid {
     /// The ball of points no farther than `radius` from the origin.
