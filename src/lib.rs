@@ -65,6 +65,7 @@ mod mesh;
 mod op;
 mod ray;
 pub mod read;
+pub mod render;
 mod sampling;
 mod scene;
 pub mod shape;

@@ -1,0 +1,45 @@
+//! Pictures: a camera looks at a scene, a frame holds what it sees, a look paints it.
+//!
+//! ```text
+//! Camera ─► View ─► trace ─► Frame ─► shade ─► RgbImage
+//! (numbers) (rays)          (t, leaf, face)     └─ picture: many frames, averaged
+//! ```
+//!
+//! A [`Frame`] exists before any pixel does, so that geometry is tested without colours
+//! and a new look is a function of a frame.
+//!
+//! # Adding a look
+//!
+//! A variant of [`Look`] and its place in [`Look::ALL`]; an arm in `Look::name`; an arm
+//! each in `Look::paint` and `Look::background`. All of them are in `look.rs`.
+
+mod camera;
+mod chunks;
+mod frame;
+#[cfg(feature = "image")]
+mod light;
+#[cfg(feature = "image")]
+mod look;
+#[cfg(feature = "image")]
+mod picture;
+#[cfg(feature = "image")]
+mod scheme;
+#[cfg(feature = "image")]
+mod shade;
+mod view;
+
+pub use camera::{Camera, CameraError, Projection};
+pub use frame::{Frame, trace};
+#[cfg(feature = "image")]
+pub use look::Look;
+#[cfg(feature = "image")]
+pub use picture::{Style, picture};
+#[cfg(feature = "image")]
+pub use scheme::Scheme;
+#[cfg(feature = "image")]
+pub use shade::shade;
+pub use view::View;
+
+/// What is told about the work done: called from any thread with the number of rays
+/// traced since its last call. `&|_| ()` listens to nothing.
+pub type Progress<'a> = &'a (dyn Fn(u64) + Sync);

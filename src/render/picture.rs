@@ -1,0 +1,177 @@
+//! Pictures with smooth edges: the average of frames whose rays are spread over each
+//! pixel.
+
+use glam::Vec3;
+use image::RgbImage;
+
+use super::frame::{TILE, trace_rows};
+use super::shade::{Shader, write};
+use super::{Camera, Look, Progress, Scheme, View};
+use crate::scene::Scene;
+
+/// How a picture is made of what a camera sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Style {
+    /// What it shows of surfaces.
+    pub look: Look,
+    /// The colours of what has none of its own.
+    pub scheme: Scheme,
+    /// How many rays go through each pixel; 0 counts as 1.
+    pub samples: u32,
+}
+
+impl Default for Style {
+    /// Shaded, in OpenSCAD's colours, one ray through the centre of each pixel.
+    fn default() -> Self {
+        Self { look: Look::Shaded, scheme: Scheme::CORNFIELD, samples: 1 }
+    }
+}
+
+impl Style {
+    /// How many rays a picture takes, for those who watch its progress.
+    pub fn rays(&self, size: [u32; 2]) -> u64 {
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let survey = u64::from(self.needs_survey());
+        pixels.saturating_mul(u64::from(self.samples.max(1)) + survey)
+    }
+
+    /// Whether the range of depths is to be known before anything is painted.
+    fn needs_survey(&self) -> bool {
+        self.look == Look::Depth
+    }
+}
+
+/// The largest number of pixels traced at once (unless a few rows have more): 28 bytes
+/// each, whatever the number of samples.
+const BAND_PIXELS: u32 = 1 << 21;
+
+/// A picture of a scene in `size` = \[width, height\] pixels.
+///
+/// The rays through a pixel are spread evenly over it, the same in each; their linear
+/// light is averaged. [`Look::Depth`] traces pixel centres once before, for the depths
+/// that are white and dark grey. The picture is the same to the last bit on any number of
+/// threads.
+///
+/// It takes some 60 MB beside the picture itself, whatever its size and `style.samples`
+/// (more for pictures more than 65,536 pixels wide).
+pub fn picture(
+    scene: &Scene,
+    camera: &Camera,
+    size: [u32; 2],
+    style: &Style,
+    progress: Progress<'_>,
+) -> RgbImage {
+    let view = camera.view(size, &scene.bounds());
+    let depths = if style.needs_survey() { survey(scene, &view, progress) } else { None };
+    let shader = Shader { scene, look: style.look, scheme: &style.scheme, depths };
+    let offsets = spread(style.samples.max(1));
+    let factor = 1.0 / style.samples.max(1) as f32;
+
+    let mut image = RgbImage::new(size[0], size[1]);
+    let bytes: &mut [u8] = &mut image;
+    for rows in bands(size) {
+        let pixels = size[0] as usize * rows.len();
+        let start = 3 * size[0] as usize * rows.start as usize;
+        let mut light = vec![Vec3::ZERO; pixels];
+        for &offset in &offsets {
+            let frame = trace_rows(scene, &view, rows.clone(), offset, progress);
+            shader.add(&frame, &mut light);
+        }
+        write(&light, factor, &mut bytes[start..start + 3 * pixels]);
+    }
+    image
+}
+
+/// The least and the greatest depth seen through pixel centres.
+fn survey(scene: &Scene, view: &View, progress: Progress<'_>) -> Option<[f64; 2]> {
+    bands(view.size())
+        .filter_map(|rows| trace_rows(scene, view, rows, [0.5, 0.5], progress).depths())
+        .reduce(|[near, far], [n, f]| [near.min(n), far.max(f)])
+}
+
+/// Ranges of rows, whole tiles high, that make up a picture.
+fn bands(size: [u32; 2]) -> impl Iterator<Item = std::ops::Range<u32>> {
+    let [width, height] = size;
+    let tiles = (BAND_PIXELS / TILE / width.max(1)).max(1);
+    let step = tiles * TILE;
+    (0..height.div_ceil(step))
+        .map(move |i| i * step..height.min((i + 1).saturating_mul(step)))
+}
+
+/// Places in the unit square, one in each of `count` equal columns and one in each of as
+/// many rows; their mean is the centre.
+///
+/// Column i has the row that i / φ, without its integer part, has among the others. Where
+/// `count` is a Fibonacci number this is the Fibonacci lattice, a rank-1 lattice (Niederreiter
+/// and Sloan, "Integration of nonperiodic functions of two variables by Fibonacci lattice
+/// rules", 1994; for pictures: Dammertz and Keller, "Image synthesis by rank-1 lattices",
+/// 2008); for other counts it stays as even, where lattices can fail (all those of 4
+/// points that fill rows and columns are diagonals).
+fn spread(count: u32) -> Vec<[f64; 2]> {
+    const INVERSE_PHI: f64 = 0.618_033_988_749_894_9;
+    let mut columns: Vec<(f64, u32)> =
+        (0..count).map(|i| ((f64::from(i) * INVERSE_PHI).fract(), i)).collect();
+    columns.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let place = |i: u32| (f64::from(i) + 0.5) / f64::from(count);
+    let mut points: Vec<[f64; 2]> = columns
+        .iter()
+        .zip(0..)
+        .map(|(&(_, column), row)| [place(column), place(row)])
+        .collect();
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_sample_is_at_the_centre() {
+        assert_eq!(spread(1), [[0.5, 0.5]]);
+    }
+
+    #[test]
+    fn samples_fill_rows_and_columns() {
+        for count in [2, 3, 4, 5, 8, 9, 16, 21, 64, 100] {
+            let cell = |v: f64| (v * f64::from(count)).floor();
+            let points = spread(count);
+            for axis in 0..2 {
+                let mut cells: Vec<f64> = points.iter().map(|p| cell(p[axis])).collect();
+                cells.sort_by(f64::total_cmp);
+                let all: Vec<f64> = (0..count).map(f64::from).collect();
+                assert_eq!(cells, all);
+            }
+        }
+    }
+
+    #[test]
+    fn samples_keep_their_distance() {
+        // On a torus, as pixels repeat; a square grid would have 1.
+        for count in [4, 5, 8, 9, 13, 16, 25, 32, 64] {
+            let points = spread(count);
+            let wrapped = |d: f64| d.abs().min(1.0 - d.abs());
+            let mut nearest = f64::INFINITY;
+            for (i, a) in points.iter().enumerate() {
+                for b in &points[i + 1..] {
+                    nearest =
+                        nearest.min(wrapped(a[0] - b[0]).hypot(wrapped(a[1] - b[1])));
+                }
+            }
+            let relative = nearest * f64::from(count).sqrt();
+            assert!(relative > 0.6, "{count} points: {relative}");
+        }
+    }
+
+    #[test]
+    fn bands_cover_each_row_once() {
+        for size in [[0, 0], [0, 5], [5, 0], [64, 48], [16384, 16384], [u32::MAX, 70]] {
+            let mut next = 0;
+            for rows in bands(size) {
+                assert!(rows.start == next && rows.end > next);
+                next = rows.end;
+            }
+            assert_eq!(next, size[1]);
+        }
+    }
+}

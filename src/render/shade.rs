@@ -1,0 +1,98 @@
+//! From what a camera sees to a picture of it.
+
+use glam::{DVec3, Vec3};
+use image::RgbImage;
+
+use super::look::Seen;
+use super::scheme::srgb8;
+use super::{Frame, Look, Scheme, chunks};
+use crate::ray::{Crossing, Sense};
+use crate::scene::Scene;
+
+/// Paints a frame of a scene: a pure function of its arguments.
+pub fn shade(scene: &Scene, frame: &Frame, look: Look, scheme: &Scheme) -> RgbImage {
+    let [width, height] = frame.size();
+    let mut light = vec![Vec3::ZERO; width as usize * height as usize];
+    Shader { scene, look, scheme, depths: frame.depths() }.add(frame, &mut light);
+    let mut image = RgbImage::new(width, height);
+    write(&light, 1.0, &mut image);
+    image
+}
+
+/// Writes pixels of light, dimmed by a factor, as sRGB.
+pub(super) fn write(light: &[Vec3], factor: f32, bytes: &mut [u8]) {
+    for (pixel, &light) in bytes.chunks_exact_mut(3).zip(light) {
+        pixel.copy_from_slice(&srgb8(factor * light));
+    }
+}
+
+/// How frames become light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shader<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) look: Look,
+    pub(super) scheme: &'a Scheme,
+    /// The depths that are white and dark grey in [`Look::Depth`].
+    pub(super) depths: Option<[f64; 2]>,
+}
+
+impl Shader<'_> {
+    /// Adds the light of each of a frame's pixels, row by row.
+    pub(super) fn add(&self, frame: &Frame, light: &mut [Vec3]) {
+        let width = frame.size()[0] as usize;
+        chunks::for_each(
+            light,
+            width.max(1),
+            || (),
+            |(), y, row| {
+                for (x, pixel) in row.iter_mut().enumerate() {
+                    #[expect(clippy::cast_possible_truncation, reason = "sizes are u32")]
+                    let (x, y) = (x as u32, y as u32);
+                    *pixel += self.pixel(frame, x, y);
+                }
+            },
+        );
+    }
+
+    fn pixel(&self, frame: &Frame, x: u32, y: u32) -> Vec3 {
+        match frame.hit(x, y) {
+            Some(hit) => self.look.paint(&self.seen(frame, x, y, &hit)),
+            None => self.look.background(self.scheme),
+        }
+    }
+
+    fn seen(&self, frame: &Frame, x: u32, y: u32, hit: &Crossing) -> Seen {
+        let ray = frame.ray(x, y);
+        let [right, up, forward] = frame.view().axes();
+        let in_eye_coordinates =
+            |v: DVec3| DVec3::new(v.dot(right), v.dot(up), -v.dot(forward)).as_vec3();
+        let normal = self.scene.normal_at(&ray, hit);
+        let towards_viewer = match hit.sense {
+            Sense::Enter => normal,
+            Sense::Exit => -normal,
+        };
+        let leaf = self.scene.leaf(hit.leaf);
+        let default = if leaf.subtracted { self.scheme.cut } else { self.scheme.face };
+        Seen {
+            color: leaf.part.color.unwrap_or(default),
+            leaf: hit.leaf,
+            nearness: self.nearness(hit.t),
+            normal,
+            eye_normal: in_eye_coordinates(towards_viewer),
+            to_viewer: in_eye_coordinates(-ray.dir).normalize_or(Vec3::Z),
+        }
+    }
+
+    /// 1 at the least depth, 0 at the greatest and beyond; 1 if they are the same.
+    fn nearness(&self, t: f64) -> f32 {
+        let Some([near, far]) = self.depths else {
+            return 1.0;
+        };
+        if far <= near {
+            return 1.0;
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "a fraction")]
+        let nearness = ((far - t) / (far - near)).clamp(0.0, 1.0) as f32;
+        nearness
+    }
+}
