@@ -1,0 +1,76 @@
+//! `solidray contains`
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use glam::DVec3;
+use serde::Serialize;
+
+use super::input::{Reading, lines_of_numbers};
+use super::numbers::Numbers;
+use super::output::{SCHEMA, point};
+use super::{Answer, Global};
+
+/// Say for points whether they are inside
+///
+/// Prints `in` or `out` for each point. The exit code is 1 if any of them is out.
+#[derive(Args, Debug)]
+pub(super) struct Contains {
+    /// The model
+    file: PathBuf,
+    /// Points; without any, they are read from standard input, one on a line
+    #[arg(value_name = "X,Y,Z", allow_hyphen_values = true)]
+    points: Vec<Numbers<3>>,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+#[derive(Serialize)]
+struct PointJson {
+    point: [f64; 3],
+    r#where: &'static str,
+}
+
+impl Contains {
+    pub(super) fn run(
+        &self,
+        global: Global,
+        out: &mut dyn Write,
+    ) -> anyhow::Result<Answer> {
+        let scene = self.reading.load(&self.file, global)?.scene;
+        let mut tracer = scene.tracer();
+        let (mut answer, mut separator) = (Answer::Yes, "");
+        if global.json {
+            write!(out, "{{\"schema\":{SCHEMA},\"points\":[")?;
+        }
+        let each = |numbers: [f64; 3]| -> anyhow::Result<()> {
+            let p = DVec3::from_array(numbers);
+            let inside = tracer.contains(p);
+            if !inside {
+                answer = Answer::No;
+            }
+            let r#where = if inside { "in" } else { "out" };
+            if global.json {
+                // Written as it comes: there may be more points than memory.
+                write!(out, "{separator}")?;
+                separator = ",";
+                serde_json::to_writer(&mut *out, &PointJson { point: numbers, r#where })?;
+            } else if global.quiet {
+                writeln!(out, "{}", r#where)?;
+            } else {
+                writeln!(out, "{} {}", point(p), r#where)?;
+            }
+            Ok(())
+        };
+        if self.points.is_empty() {
+            lines_of_numbers(each)?;
+        } else {
+            self.points.iter().map(|p| p.0).try_for_each(each)?;
+        }
+        if global.json {
+            writeln!(out, "]}}")?;
+        }
+        Ok(answer)
+    }
+}

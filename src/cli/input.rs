@@ -1,0 +1,155 @@
+//! Models and lines from files and standard input.
+
+use std::io::{self, BufRead, Read};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::{Context, bail};
+use clap::{Args, ValueEnum};
+use solidray::read::{self, Curves, Format, Model, ReadOptions};
+use solidray::{CompileError, Scene, Solid};
+
+use super::Global;
+use super::numbers::Numbers;
+use super::report;
+
+/// How files are read.
+#[derive(Args, Clone, Debug)]
+pub(super) struct Reading {
+    /// What curves of OpenSCAD models become
+    #[arg(long, value_enum, default_value_t = CurvesArg::Auto, help_heading = "Reading")]
+    curves: CurvesArg,
+    /// The format, where the file's name does not tell it
+    #[arg(long, value_enum, help_heading = "Reading")]
+    format: Option<FormatArg>,
+    /// The OpenSCAD program that converts .scad files [default: openscad on PATH]
+    #[arg(long, value_name = "PROGRAM", help_heading = "Reading")]
+    openscad: Option<PathBuf>,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum CurvesArg {
+    /// true curves, but polygons where $fn is 3 to 8, as for hexagonal holes
+    Auto,
+    /// true curves everywhere
+    Exact,
+    /// OpenSCAD's own polygons everywhere, vertex for vertex
+    Faceted,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum FormatArg {
+    Csg,
+    Scad,
+    Obj,
+    Stl,
+    Off,
+}
+
+impl From<FormatArg> for Format {
+    fn from(format: FormatArg) -> Self {
+        match format {
+            FormatArg::Csg => Self::Csg,
+            FormatArg::Scad => Self::Scad,
+            FormatArg::Obj => Self::Obj,
+            FormatArg::Stl => Self::Stl,
+            FormatArg::Off => Self::Off,
+        }
+    }
+}
+
+/// A compiled model, and how long that took.
+pub(super) struct Loaded {
+    pub(super) scene: Scene,
+    pub(super) read_seconds: f64,
+    pub(super) compile_seconds: f64,
+}
+
+impl Reading {
+    /// Reads a model; its warnings go to standard error unless they are unwanted.
+    pub(super) fn read(&self, file: &Path, global: Global) -> anyhow::Result<Model> {
+        let model = self.read_silently(file)?;
+        if !global.quiet {
+            for warning in &model.warnings {
+                report::warning(&file.to_string_lossy(), warning);
+            }
+        }
+        Ok(model)
+    }
+
+    /// Reads a model and keeps its warnings to itself.
+    pub(super) fn read_silently(&self, file: &Path) -> anyhow::Result<Model> {
+        let options = ReadOptions {
+            curves: match self.curves {
+                CurvesArg::Auto => Curves::Auto,
+                CurvesArg::Exact => Curves::Exact,
+                CurvesArg::Faceted => Curves::Faceted,
+            },
+            openscad: self.openscad.clone(),
+            format: self.format.map(Format::from),
+        };
+        if file.as_os_str() != "-" {
+            return Ok(read::file(file, &options)?);
+        }
+        let Some(format) = options.format else {
+            bail!("standard input needs --format csg, scad, obj, stl or off");
+        };
+        let mut bytes = Vec::new();
+        io::stdin().lock().read_to_end(&mut bytes).context("standard input")?;
+        Ok(read::bytes(&bytes, Path::new("standard input"), format, &options)?)
+    }
+
+    /// Reads and compiles a model.
+    pub(super) fn load(&self, file: &Path, global: Global) -> anyhow::Result<Loaded> {
+        let start = Instant::now();
+        let model = self.read(file, global)?;
+        let read_seconds = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let scene = compile(file, &model.solid)?;
+        let compile_seconds = start.elapsed().as_secs_f64();
+        Ok(Loaded { scene, read_seconds, compile_seconds })
+    }
+}
+
+/// Why the solid of a file cannot be compiled, as `file:line:column: message` if it has a
+/// place.
+#[derive(Debug)]
+pub(super) struct CompileFault {
+    file: String,
+    error: CompileError,
+}
+
+impl std::error::Error for CompileFault {}
+
+impl std::fmt::Display for CompileFault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let message = self.error.to_string();
+        let gap =
+            if message.starts_with(|c: char| c.is_ascii_digit()) { "" } else { " " };
+        write!(f, "{}:{gap}{message}", self.file)
+    }
+}
+
+/// Compiles a model; an error begins with the file's name.
+pub(super) fn compile(file: &Path, solid: &Solid) -> Result<Scene, CompileFault> {
+    Scene::compile(solid)
+        .map_err(|error| CompileFault { file: file.display().to_string(), error })
+}
+
+/// Calls `each` with the numbers on every line of standard input that has any; `#` begins a
+/// comment.
+pub(super) fn lines_of_numbers<const N: usize>(
+    mut each: impl FnMut([f64; N]) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    for (i, line) in io::stdin().lock().lines().enumerate() {
+        let line = line.context("standard input")?;
+        let line = line.split('#').next().unwrap_or_default().trim();
+        if line.is_empty() {
+            continue;
+        }
+        let Numbers(numbers) =
+            line.parse().with_context(|| format!("standard input, line {}", i + 1))?;
+        each(numbers)?;
+    }
+    Ok(())
+}

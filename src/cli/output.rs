@@ -1,0 +1,133 @@
+//! Results: JSON on standard output, and files that appear whole or not at all.
+
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::Context;
+use glam::DVec3;
+use serde::Serialize;
+use solidray::Aabb;
+use solidray::measure::Estimate;
+
+/// The version of the JSON that commands print: names keep their meaning within one.
+pub(super) const SCHEMA: u32 = 1;
+
+/// A JSON object with the version in front.
+#[derive(Serialize)]
+struct Versioned<T> {
+    schema: u32,
+    #[serde(flatten)]
+    body: T,
+}
+
+/// Prints one JSON object on a line of its own.
+pub(super) fn json(out: &mut dyn Write, body: impl Serialize) -> anyhow::Result<()> {
+    serde_json::to_writer(&mut *out, &Versioned { schema: SCHEMA, body })?;
+    Ok(writeln!(out)?)
+}
+
+/// An [`Estimate`] as JSON.
+#[derive(Serialize)]
+pub(super) struct EstimateJson {
+    value: f64,
+    interval: [f64; 2],
+    rays: u64,
+    method: &'static str,
+    target_met: bool,
+    resolved: bool,
+}
+
+impl From<&Estimate> for EstimateJson {
+    fn from(estimate: &Estimate) -> Self {
+        let Estimate { value, interval, rays, method, target_met, resolved } = *estimate;
+        Self { value, interval, rays, method: method.name(), target_met, resolved }
+    }
+}
+
+/// An estimate in words: digits that were earned, then the half width of the interval.
+pub(super) fn in_words(estimate: &Estimate) -> String {
+    if !estimate.resolved {
+        return format!("not resolved: at most {:.3e} (95 %)", estimate.interval[1]);
+    }
+    let half_width = estimate.half_width();
+    if half_width == 0.0 {
+        return format!("{}", estimate.value);
+    }
+    let decimals = decimals(half_width);
+    if decimals > 12 || estimate.value.abs() >= 1e15 {
+        return format!("{:e} ± {half_width:.1e} (95 %)", estimate.value);
+    }
+    format!("{:.decimals$} ± {half_width:.decimals$} (95 %)", estimate.value)
+}
+
+/// How many decimals show two digits of an error bar.
+fn decimals(half_width: f64) -> usize {
+    let digits = 1.0 - half_width.log10().floor();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "it is clamped to a small positive number"
+    )]
+    let decimals = digits.clamp(0.0, 400.0) as usize;
+    decimals
+}
+
+/// A box as JSON.
+#[derive(Serialize)]
+pub(super) struct BoundsJson {
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+/// `null` for an empty box.
+pub(super) fn bounds_json(bounds: &Aabb) -> Option<BoundsJson> {
+    (!bounds.is_empty())
+        .then(|| BoundsJson { min: bounds.min.to_array(), max: bounds.max.to_array() })
+}
+
+/// A point as `x,y,z`, which the program reads back.
+pub(super) fn point(p: DVec3) -> String {
+    format!("{},{},{}", p.x, p.y, p.z)
+}
+
+/// Writes a file beside its place and moves it there when it is complete.
+pub(super) fn save(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    let write = || -> std::io::Result<()> {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".solidray-").suffix(".part");
+        #[cfg(unix)]
+        {
+            // A file like any other that the user makes, not one only they may read.
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let mut file = builder.tempfile_in(folder)?;
+        file.write_all(bytes)?;
+        file.persist(path).map_err(|error| error.error)?;
+        Ok(())
+    };
+    write().with_context(|| path.display().to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use solidray::measure::Method;
+
+    #[test]
+    fn only_digits_that_were_earned_are_shown() {
+        let estimate = |value, half| Estimate {
+            value,
+            interval: [value - half, value + half],
+            rays: 1,
+            method: Method::Lattice,
+            target_met: true,
+            resolved: true,
+        };
+        assert_eq!(in_words(&estimate(113.097_335, 0.0123)), "113.097 ± 0.012 (95 %)");
+        assert_eq!(in_words(&estimate(113_097.335, 12.3)), "113097 ± 12 (95 %)");
+        assert_eq!(in_words(&estimate(8.0, 0.0)), "8");
+    }
+}

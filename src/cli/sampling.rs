@@ -1,0 +1,44 @@
+//! How far a measurement goes.
+
+use std::time::Duration;
+
+use clap::Args;
+use solidray::measure::Sampling;
+
+/// The limits that commands which measure share.
+#[derive(Args, Clone, Debug)]
+pub(super) struct SamplingArgs {
+    /// Go on until the half width of the 95 % interval is this fraction of the value
+    #[arg(long, value_name = "T", default_value = "1e-4", value_parser = positive, help_heading = "Sampling")]
+    rel_tol: f64,
+    /// Stop at this many rays though the tolerance is not met
+    #[arg(long, value_name = "N", default_value_t = Sampling::default().max_rays, value_parser = clap::value_parser!(u64).range(1..), help_heading = "Sampling")]
+    max_rays: u64,
+    /// Stop before this many seconds though the tolerance is not met
+    #[arg(long, value_name = "S", value_parser = positive, help_heading = "Sampling")]
+    time_limit: Option<f64>,
+    /// Which random numbers: equal seeds give equal answers, bit by bit
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Sampling")]
+    seed: u64,
+}
+
+impl SamplingArgs {
+    pub(super) fn meant(&self) -> Sampling {
+        Sampling {
+            rel_tol: self.rel_tol,
+            max_rays: self.max_rays,
+            time_limit: self
+                .time_limit
+                .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
+            seed: self.seed,
+        }
+    }
+}
+
+/// A finite number above zero.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        Ok(_) | Err(_) => Err(format!("`{text}` is not a finite number above zero")),
+    }
+}

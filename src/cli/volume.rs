@@ -1,0 +1,81 @@
+//! `solidray volume`
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Args;
+use serde::Serialize;
+use solidray::measure;
+
+use super::input::Reading;
+use super::meter::Meter;
+use super::output::{self, EstimateJson, in_words};
+use super::sampling::SamplingArgs;
+use super::{Answer, Global};
+
+/// Measure the volume, with a 95 % interval
+///
+/// Sixteen randomly shifted Fibonacci lattices of parallel rays are made larger until the
+/// interval is as narrow as asked. A solid that too few rays meet is "not resolved" and gets
+/// an upper bound.
+#[derive(Args, Debug)]
+pub(super) struct Volume {
+    /// The model
+    file: PathBuf,
+    #[command(flatten)]
+    sampling: SamplingArgs,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+#[derive(Serialize)]
+struct Report {
+    #[serde(flatten)]
+    estimate: EstimateJson,
+    seconds: f64,
+    seed: u64,
+    rel_tol: f64,
+}
+
+impl Volume {
+    pub(super) fn run(
+        &self,
+        global: Global,
+        out: &mut dyn Write,
+    ) -> anyhow::Result<Answer> {
+        let loaded = self.reading.load(&self.file, global)?;
+        let sampling = self.sampling.meant();
+        let start = Instant::now();
+        let meter = Meter::new(global, "measuring", None);
+        let volume = measure::volume_with(&loaded.scene, &sampling, &|n| meter.tick(n));
+        drop(meter);
+        let seconds = start.elapsed().as_secs_f64();
+        if global.json {
+            let estimate = EstimateJson::from(&volume);
+            let measure::Sampling { seed, rel_tol, .. } = sampling;
+            output::json(out, Report { estimate, seconds, seed, rel_tol })?;
+            return Ok(Answer::Yes);
+        }
+        writeln!(out, "{}", in_words(&volume))?;
+        if !volume.target_met && !global.quiet {
+            super::report::note(&format!(
+                "the relative tolerance {:e} was not met with {} rays: allow more with --max-rays or --time-limit",
+                sampling.rel_tol, volume.rays
+            ));
+        }
+        if global.verbose {
+            let [low, high] = volume.interval;
+            writeln!(out, "interval  {low} to {high}")?;
+            writeln!(out, "method    {}", volume.method.name())?;
+            writeln!(out, "rays      {}", volume.rays)?;
+            writeln!(
+                out,
+                "seconds   {seconds:.3} (reading {:.3}, compiling {:.3})",
+                loaded.read_seconds, loaded.compile_seconds
+            )?;
+            writeln!(out, "seed      {}", sampling.seed)?;
+        }
+        Ok(Answer::Yes)
+    }
+}

@@ -1,0 +1,376 @@
+//! The program as its users meet it: what it prints where, and its exit codes.
+#![cfg(feature = "cli")]
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use serde::Deserialize;
+use tempfile::TempDir;
+
+/// A folder with some models to work in.
+struct Desk(TempDir);
+
+/// What the program did.
+struct Done {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+const BALL: &str = "sphere($fn = 0, $fa = 12, $fs = 2, r = 3);\n";
+const TUBE: &str = "difference() {
+\tcylinder($fn = 0, $fa = 12, $fs = 2, h = 10, r1 = 5, r2 = 5, center = false);
+\tmultmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -1], [0, 0, 0, 1]]) {
+\t\tcylinder($fn = 0, $fa = 12, $fs = 2, h = 12, r1 = 3, r2 = 3, center = false);
+\t}
+}
+";
+
+impl Desk {
+    fn new() -> Self {
+        let desk = Self(tempfile::tempdir().expect("a temporary folder"));
+        desk.put("ball.csg", BALL);
+        desk.put("tube.csg", TUBE);
+        desk
+    }
+
+    fn put(&self, name: &str, text: &str) {
+        fs::write(self.path(name), text).expect("a file in a temporary folder");
+    }
+
+    fn path(&self, name: &str) -> std::path::PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn run(&self, args: &[&str]) -> Done {
+        self.run_with_input(args, "")
+    }
+
+    fn run_with_input(&self, args: &[&str], input: &str) -> Done {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_solidray"))
+            .args(args)
+            .current_dir(self.0.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        // A program that does not read its input closes it, which is no failure here.
+        let _ = child.stdin.take().expect("it is piped").write_all(input.as_bytes());
+        let Output { status, stdout, stderr } =
+            child.wait_with_output().expect("it ends");
+        Done {
+            code: status.code().expect("it was not killed"),
+            out: String::from_utf8(stdout).expect("text"),
+            err: String::from_utf8(stderr).expect("text"),
+        }
+    }
+}
+
+#[test]
+fn contains_answers_each_point_and_says_no_if_any_is_out() {
+    let desk = Desk::new();
+    let done = desk.run(&["contains", "tube.csg", "4,0,5", "0,0,5", "-4,0,5"]);
+    assert_eq!(done.out, "4,0,5 in\n0,0,5 out\n-4,0,5 in\n");
+    assert_eq!(done.code, 1);
+    let done = desk.run(&["contains", "tube.csg", "4,0,5"]);
+    assert_eq!((done.code, done.out.as_str()), (0, "4,0,5 in\n"));
+}
+
+#[test]
+fn contains_reads_points_from_standard_input() {
+    let desk = Desk::new();
+    let input = "# x y z\n4 0 5\n\n0,0,5 # the hole\n";
+    let done = desk.run_with_input(&["contains", "tube.csg", "-q"], input);
+    assert_eq!((done.code, done.out.as_str()), (1, "in\nout\n"));
+    let done = desk.run_with_input(&["contains", "tube.csg"], "4 0 5\n1 2\n");
+    assert_eq!(done.code, 2);
+    assert_eq!(
+        done.err,
+        "solidray: error: standard input, line 2: expected 3 numbers separated by commas, found 2\n"
+    );
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ContainsJson {
+    schema: u32,
+    points: Vec<PointJson>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PointJson {
+    point: [f64; 3],
+    r#where: String,
+}
+
+#[test]
+fn contains_prints_one_json_object() {
+    let desk = Desk::new();
+    let done = desk.run(&["contains", "tube.csg", "4,0,5", "0,0,5", "--json"]);
+    let json: ContainsJson = serde_json::from_str(&done.out).expect("one object");
+    assert_eq!(json.schema, 1);
+    assert_eq!(json.points[0].point, [4.0, 0.0, 5.0]);
+    let answers: Vec<&str> = json.points.iter().map(|p| p.r#where.as_str()).collect();
+    assert_eq!(answers, ["in", "out"]);
+    let done = desk.run_with_input(&["contains", "tube.csg", "--json"], "");
+    let json: ContainsJson = serde_json::from_str(&done.out).expect("one object");
+    assert!(json.points.is_empty());
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RayJson {
+    schema: u32,
+    origin: [f64; 3],
+    dir: [f64; 3],
+    spans: Vec<SpanJson>,
+    chord: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SpanJson {
+    t: [f64; 2],
+    chord: f64,
+    enter: CrossingJson,
+    exit: CrossingJson,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CrossingJson {
+    point: [f64; 3],
+    normal: [f64; 3],
+    leaf: u32,
+    face: u32,
+    kind: String,
+    line: Option<u32>,
+    column: Option<u32>,
+}
+
+#[test]
+fn ray_lists_spans_with_points_normals_and_owners() {
+    let desk = Desk::new();
+    let args = ["ray", "tube.csg", "--origin", "-10,0,5", "--dir", "2,0,0", "--json"];
+    let done = desk.run(&args);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let json: RayJson = serde_json::from_str(&done.out).expect("one object");
+    assert_eq!(
+        (json.schema, json.origin, json.dir),
+        (1, [-10.0, 0.0, 5.0], [2.0, 0.0, 0.0])
+    );
+    assert_eq!(json.chord, 4.0);
+    let [first, second] = json.spans.as_slice() else { panic!("{}", done.out) };
+    assert_eq!((first.t, first.chord), ([2.5, 3.5], 2.0));
+    assert_eq!(second.t, [6.5, 7.5]);
+    assert_eq!(first.enter.point, [-5.0, 0.0, 5.0]);
+    assert_eq!(first.enter.normal, [-1.0, 0.0, 0.0]);
+    assert_eq!((first.enter.leaf, first.enter.face), (0, 0));
+    assert_eq!(
+        (first.exit.leaf, first.exit.line, first.exit.column),
+        (1, Some(4), Some(3))
+    );
+    assert_eq!(first.exit.kind, "cylinder");
+}
+
+#[test]
+fn ray_takes_many_rays_from_standard_input() {
+    let desk = Desk::new();
+    let input = "-10 0 5 1 0 0\n-10,0,50,1,0,0\n";
+    let done = desk.run_with_input(&["ray", "tube.csg", "--json"], input);
+    let counts: Vec<usize> = done
+        .out
+        .lines()
+        .map(|line| serde_json::from_str::<RayJson>(line).expect("an object a line"))
+        .map(|ray| ray.spans.len())
+        .collect();
+    assert_eq!(counts, [2, 0]);
+    let done = desk.run_with_input(&["ray", "tube.csg"], "0 0 0 0 0 0\n");
+    assert_eq!(done.code, 2);
+    assert_eq!(done.err, "solidray: error: the direction is zero\n");
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(dead_code, reason = "the fields that must be there, and no others")]
+struct EstimateJson {
+    value: f64,
+    interval: [f64; 2],
+    rays: u64,
+    method: String,
+    target_met: bool,
+    resolved: bool,
+}
+
+#[test]
+fn volume_says_value_interval_and_how() {
+    let desk = Desk::new();
+    let args = ["volume", "ball.csg", "--json", "--rel-tol", "1e-3", "--seed", "5"];
+    let done = desk.run(&args);
+    let json: serde_json::Value = serde_json::from_str(&done.out).expect("one object");
+    let number = |name: &str| json[name].as_f64().expect(name);
+    let exact = 36.0 * std::f64::consts::PI;
+    assert!((number("value") - exact).abs() < 1e-3 * exact);
+    assert!(json["interval"][0].as_f64() <= Some(number("value")));
+    assert_eq!(json["method"], "lattice");
+    assert_eq!(json["target_met"], true);
+    assert_eq!(json["seed"], 5);
+    assert!(number("rays") > 0.0 && number("seconds") >= 0.0);
+    let again = desk.run(&[&args[..], &["-j", "1"]].concat());
+    let again: serde_json::Value = serde_json::from_str(&again.out).expect("one object");
+    assert_eq!(json["value"], again["value"], "the same bits on one thread");
+}
+
+#[test]
+fn volume_without_a_solid_is_not_resolved() {
+    let desk = Desk::new();
+    desk.put("none.csg", &format!("difference() {{ {BALL} {BALL} }}"));
+    let done = desk.run(&["volume", "none.csg", "--max-rays", "10000"]);
+    assert!(done.out.starts_with("not resolved: at most "), "{}", done.out);
+    assert!(done.err.contains("was not met"), "{}", done.err);
+    desk.put("empty.csg", "group();\n");
+    assert_eq!(desk.run(&["volume", "empty.csg"]).out, "0\n");
+}
+
+#[test]
+fn compare_tells_same_from_different() {
+    let desk = Desk::new();
+    desk.put("larger.csg", "sphere($fn = 0, $fa = 12, $fs = 2, r = 3.3);\n");
+    let done = desk.run(&["compare", "ball.csg", "ball.csg"]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    assert!(done.out.starts_with("the same within 0.001"), "{}", done.out);
+    let done = desk.run(&["compare", "ball.csg", "larger.csg", "--json"]);
+    assert_eq!(done.code, 1, "{}{}", done.out, done.err);
+    let json: serde_json::Value = serde_json::from_str(&done.out).expect("one object");
+    for name in ["a", "b", "a_minus_b", "b_minus_a", "difference", "iou"] {
+        let estimate = json[name].clone();
+        serde_json::from_value::<EstimateJson>(estimate).expect(name);
+    }
+    let iou = json["iou"]["value"].as_f64().expect("a number");
+    assert!((iou - 1.0 / 1.331).abs() < 1e-3, "{iou}");
+    assert_eq!(json["worst"]["only_in"], "B");
+    assert_eq!(json["verdict"], "different");
+}
+
+#[test]
+fn check_says_what_is_in_a_model() {
+    let desk = Desk::new();
+    let done = desk.run(&["check", "tube.csg", "--json"]);
+    assert_eq!(done.code, 0);
+    let json: serde_json::Value = serde_json::from_str(&done.out).expect("one object");
+    assert_eq!(json["schema"], 1);
+    assert_eq!(json["leaves"], 2);
+    assert_eq!(json["faces"], 6);
+    assert_eq!(json["differences"], 1);
+    assert_eq!(json["bounds"]["max"], serde_json::json!([5.0, 5.0, 10.0]));
+    assert_eq!(json["warnings"], serde_json::json!([]));
+    assert!(desk.run(&["check", "tube.csg"]).out.contains("2 cylinder"));
+}
+
+#[test]
+fn check_finds_faults_and_says_where() {
+    let desk = Desk::new();
+    desk.put("bad.csg", "union() {\n\tnonsense(r = 1);\n}\n");
+    let done = desk.run(&["check", "bad.csg"]);
+    assert_eq!(done.code, 1);
+    assert!(done.out.starts_with("bad.csg:2:2: "), "{}", done.out);
+    let done = desk.run(&["check", "missing.csg"]);
+    assert_eq!((done.code, done.out.as_str()), (2, ""));
+    assert!(done.err.starts_with("solidray: error: missing.csg: "), "{}", done.err);
+}
+
+#[test]
+fn render_writes_a_whole_picture_or_none() {
+    let desk = Desk::new();
+    let done =
+        desk.run(&["render", "tube.csg", "-o", "tube.png", "--imgsize=64,48", "--json"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let json: serde_json::Value = serde_json::from_str(&done.out).expect("one object");
+    for part in ["read", "compile", "trace", "write"] {
+        assert!(json["seconds"][part].as_f64() >= Some(0.0), "{part}");
+    }
+    let picture = image::open(desk.path("tube.png")).expect("a picture").to_rgb8();
+    assert_eq!(picture.dimensions(), (64, 48));
+    assert_ne!(picture.get_pixel(1, 1), picture.get_pixel(32, 36));
+
+    for (args, message) in [
+        (
+            ["render", "tube.csg", "-o", "tube.jpg"],
+            "tube.jpg: pictures are written as .png",
+        ),
+        (["render", "tube.csg", "-o", "no/t.png"], "no/t.png: there is no folder no"),
+        (["render", "gone.csg", "-o", "gone.png"], "gone.csg: "),
+    ] {
+        let done = desk.run(&args);
+        assert_eq!(done.code, 2);
+        assert!(done.err.contains(message), "{}", done.err);
+    }
+    let left = fs::read_dir(desk.0.path()).expect("the folder").count();
+    assert_eq!(left, 3, "two models and one picture");
+}
+
+#[test]
+fn render_takes_a_camera() {
+    let desk = Desk::new();
+    let camera = ["--camera=0,0,5,90,0,0,60", "--camera=0,-60,5,0,0,5"];
+    let pictures: Vec<Vec<u8>> = camera
+        .iter()
+        .map(|camera| {
+            let common = ["render", "tube.csg", "-o", "v.png", "--imgsize", "40,30"];
+            let done = desk.run(&[&common[..], &[camera, "--projection=o"]].concat());
+            assert_eq!(done.code, 0, "{}", done.err);
+            fs::read(desk.path("v.png")).expect("a picture")
+        })
+        .collect();
+    assert_eq!(pictures[0], pictures[1], "two ways to say the same camera");
+    let done = desk.run(&["render", "tube.csg", "-o", "v.png", "--camera=1,2,3"]);
+    assert_eq!(done.code, 2);
+}
+
+#[test]
+fn wrong_usage_is_code_2() {
+    let desk = Desk::new();
+    for args in [
+        &["volume"][..],
+        &["volume", "ball.csg", "--rel-tol", "0"],
+        &["ray", "ball.csg", "--origin", "1,2"],
+        &["contains", "ball.csg", "1,2"],
+        &["render", "ball.csg"],
+        &["dance"],
+    ] {
+        let done = desk.run(args);
+        assert_eq!(done.code, 2, "{args:?}: {}", done.out);
+        assert!(done.out.is_empty() && !done.err.is_empty(), "{args:?}");
+    }
+}
+
+#[test]
+fn standard_input_can_be_the_model() {
+    let desk = Desk::new();
+    let done = desk.run_with_input(&["contains", "-", "--format", "csg", "0,0,0"], BALL);
+    assert_eq!(done.out, "0,0,0 in\n", "{}", done.err);
+    let done = desk.run_with_input(&["volume", "-"], BALL);
+    assert_eq!(done.code, 2);
+    assert!(done.err.contains("--format"), "{}", done.err);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_broken_pipe_is_no_failure() {
+    let desk = Desk::new();
+    let program = Path::new(env!("CARGO_BIN_EXE_solidray")).display().to_string();
+    let script = format!(
+        "yes '0 0 0' | head -n 200000 | {{ {program} contains ball.csg; echo $? >&2; }} | head -n 1"
+    );
+    let done = Command::new("sh")
+        .args(["-c", &script])
+        .current_dir(desk.0.path())
+        .output()
+        .expect("a shell");
+    assert_eq!(String::from_utf8_lossy(&done.stdout), "0,0,0 in\n");
+    assert_eq!(String::from_utf8_lossy(&done.stderr), "0\n");
+}
