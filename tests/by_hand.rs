@@ -1,5 +1,6 @@
 //! Cases that can be checked with pencil and paper.
 
+#[expect(dead_code, reason = "paper examples need no random models")]
 mod support;
 
 use glam::{DVec3, dvec3};
@@ -79,6 +80,17 @@ fn shared_faces_join_and_vanish() {
         ends(&a, &ray),
         "a flush cut leaves no film"
     );
+}
+
+#[test]
+fn a_gap_too_thin_for_t_is_closed() {
+    let slot = Solid::cuboid_between(-DVec3::ONE, dvec3(1e-9, 2.0, 2.0))
+        .translated(dvec3(1.0, 0.0, 0.0));
+    let slotted = cube(4.0) - slot.clone() + (slot & cube(2.0));
+    let far = 2.0_f64.powi(30);
+    let ray = |origin: f64| Ray::new(dvec3(origin, 0.0, 0.0), DVec3::X);
+    assert_eq!(ends(&slotted, &ray(-2.0)).len(), 2);
+    assert_eq!(ends(&slotted, &ray(-far)), [[far - 2.0, far + 2.0]]);
 }
 
 #[test]

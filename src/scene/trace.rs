@@ -47,7 +47,8 @@ impl<'a> Tracer<'a> {
     ///
     /// Touching stretches are one; where the ray only touches the solid there is none. A
     /// ray within a face counts as moved a little to one side, the same for all faces that
-    /// lie in one plane. Stretches whose ends are the same number `t` are left out.
+    /// lie in one plane. Stretches whose ends are the same number `t` are left out, and so
+    /// are such gaps.
     pub fn spans(&mut self, ray: &Ray) -> &[Span] {
         self.spans.clear();
         if let Some(line) = Line::new(ray, &self.scene.bounds) {
@@ -101,7 +102,7 @@ impl<'a> Tracer<'a> {
                 match entered.take() {
                     None => entered = Some(crossing),
                     Some(enter) if enter.t < crossing.t => {
-                        self.spans.push(Span { enter, exit: crossing });
+                        self.append(Span { enter, exit: crossing });
                     }
                     Some(_) => {}
                 }
@@ -110,6 +111,15 @@ impl<'a> Tracer<'a> {
         }
         debug_assert!(entered.is_none(), "every leaf is left as often as it is entered");
         debug_assert!(self.counts == self.scene.far_away, "the counters are back");
+    }
+
+    /// Adds a span behind the others, or to the last one if there is no number between
+    /// them: places that differ on the line can be one `t` of a ray that comes from afar.
+    fn append(&mut self, span: Span) {
+        match self.spans.last_mut() {
+            Some(last) if last.exit.t >= span.enter.t => last.exit = span.exit,
+            _ => self.spans.push(span),
+        }
     }
 
     /// Toggles the leaves of some events; says whether the root was true before and is

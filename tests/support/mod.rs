@@ -1,4 +1,11 @@
 //! What all tests of spans share.
+//!
+//! A test file takes what it needs: `#[expect(dead_code, reason = "…")] mod support;`.
+
+pub(crate) mod dice;
+pub(crate) mod meshes;
+pub(crate) mod model;
+pub(crate) mod strategies;
 
 use glam::DVec3;
 use solidray::{Ray, Scene, Sense, Solid, Span};
@@ -15,9 +22,24 @@ pub(crate) fn spans(scene: &Scene, ray: &Ray) -> Vec<Span> {
     spans
 }
 
+/// The ends of the spans of one ray in a scene, checked.
+pub(crate) fn ends_in(scene: &Scene, ray: &Ray) -> Vec<[f64; 2]> {
+    spans(scene, ray).iter().map(|s| [s.enter.t, s.exit.t]).collect()
+}
+
 /// The ends of the spans of one ray.
 pub(crate) fn ends(solid: &Solid, ray: &Ray) -> Vec<[f64; 2]> {
-    spans(&scene(solid), ray).iter().map(|s| [s.enter.t, s.exit.t]).collect()
+    ends_in(&scene(solid), ray)
+}
+
+/// The total length of some spans, in multiples of the direction.
+pub(crate) fn total(ends: &[[f64; 2]]) -> f64 {
+    ends.iter().map(|[enter, exit]| exit - enter).sum()
+}
+
+/// Whether a place on a ray is inside a span.
+pub(crate) fn covers(ends: &[[f64; 2]], t: f64) -> bool {
+    ends.iter().any(|[enter, exit]| *enter <= t && t < *exit)
 }
 
 /// What every list of spans must be: finite, in order, disjoint, none empty, owned by
