@@ -30,13 +30,13 @@ pub(super) fn reflection(n: Vec3, v: Vec3) -> Reflection {
     // Blinn's highlight (1977): the normal against the bisector of light and viewer.
     let highlight = n.dot((KEY + v).normalize_or(n)).max(0.0).powi(40);
     Reflection {
-        diffuse: 0.06 + 0.12 * sky + 0.74 * key + 0.14 * fill,
+        diffuse: 0.10 + 0.13 * sky + 0.70 * key + 0.14 * fill,
         specular: 0.07 * highlight,
     }
 }
 
 /// A light that reaches around the edge of night: the square of the cosine stretched
-/// from −1…1 to 0…1 (Mitchell, McTaggart, Green: "Shading in Valve's Source Engine",
+/// from −1…1 to 0…1 (Mitchell et al., "Shading in Valve's Source Engine",
 /// SIGGRAPH 2006, §8.2.1).
 fn half_lambert(cosine: f32) -> f32 {
     let stretched = 0.5 + 0.5 * cosine;
@@ -54,7 +54,7 @@ mod tests {
             let (sin, cos) = (f32::from(i) * 2.4).sin_cos();
             let flat = (1.0 - z * z).max(0.0).sqrt();
             let light = reflection(Vec3::new(flat * cos, flat * sin, z), Vec3::Z);
-            assert!((0.06..=1.0).contains(&light.diffuse), "{light:?}");
+            assert!((0.1..=1.0).contains(&light.diffuse), "{light:?}");
         }
     }
 
