@@ -33,9 +33,9 @@ fn paths_fill_by_parity() {
     assert!(close(area(&[outer.clone(), square(5.0, 5.0, 10.0)]), 150.0));
     assert!(close(area(&[outer.clone(), square(10.0, 0.0, 10.0)]), 200.0));
     assert!(close(area(&[outer.clone(), square(10.0, 10.0, 10.0)]), 200.0));
-    assert_eq!(area(&[outer.clone(), outer.clone()]), 0.0);
+    assert!(close(area(&[outer.clone(), outer.clone()]), 0.0));
     let twice = [outer.clone(), outer].concat();
-    assert_eq!(area(&[twice]), 0.0);
+    assert!(close(area(&[twice]), 0.0));
 }
 
 #[test]
@@ -165,7 +165,7 @@ proptest! {
         let filled = |p: DVec2| mesh.iter().any(|mesh| mesh.faces().iter().any(|f| {
             let [a, b, c] = f.map(|i| mesh.points()[i as usize]);
             let left = |a: DVec3, b: DVec3| (b - a).truncate().perp_dot(p - a.truncate()) > 0.0;
-            a.z == 1.0 && b.z == 1.0 && c.z == 1.0 && left(a, b) && left(b, c) && left(c, a)
+            f.iter().all(|&i| mesh.points()[i as usize].z > 0.5) && left(a, b) && left(b, c) && left(c, a)
         }));
         for x in 0..12 {
             for y in 0..12 {

@@ -12,11 +12,11 @@ fn bytes(text: impl AsRef<[u8]>, format: Format) -> Result<Model, ReadError> {
 }
 
 fn csg(text: &str) -> Model {
-    bytes(text, Format::Csg).unwrap()
+    bytes(text, Format::Csg).expect("the text is right")
 }
 
 fn refused(text: impl AsRef<[u8]>, format: Format) -> String {
-    bytes(text, format).unwrap_err().to_string()
+    bytes(text, format).expect_err("the text is wrong").to_string()
 }
 
 /// A Debug text says what the topmost node is.
@@ -143,11 +143,15 @@ fn what_is_ignored_is_said() {
     };
     assert_eq!(
         texts("cube(1, colour = 3);"),
-        ["1:9: `cube` has no argument `colour`; this one is ignored"]
+        ["1:1: `cube` has no argument `colour`; it is ignored"]
     );
     assert_eq!(
         texts("group(3);"),
-        ["1:7: `group` has only 0 arguments without a name; this one is ignored"]
+        ["1:1: `group` has at most 0 arguments without a name; more are ignored"]
+    );
+    assert_eq!(
+        texts("cube(1, size = 2);"),
+        ["1:1: `cube` has `size` more than once; the last one counts"]
     );
     assert_eq!(
         texts("multmatrix([[0,0,0,0]]) cube(1);"),
@@ -159,7 +163,7 @@ fn what_is_ignored_is_said() {
     );
     assert_eq!(
         texts("polygon([[0,0],[1,0],[0,1]], [[0, 1, 7, -1]]);"),
-        ["1:31: `polygon` names 2 points that do not exist; they are left out"]
+        ["1:1: `polygon` names points that do not exist 2 times; they are left out"]
     );
 }
 

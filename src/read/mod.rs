@@ -1,11 +1,11 @@
 //! Text in, solid out: OpenSCAD's `.csg` and `.scad`, and meshes as `.obj`, `.stl`, `.off`.
 //!
-//! [`file`] and [`bytes`] are the doors. What a file says goes into a [`Model`]; what is
+//! [`file()`] and [`bytes()`] are the doors. What a file says goes into a [`Model`]; what is
 //! wrong with it into a [`ReadError`] that names file, line and column. No bytes make a
 //! reader panic or use the stack in proportion to the input.
 //!
 //! To add a format: its reader in a file here, a variant and its endings in
-//! [`Format`](options::Format), an arm in [`bytes`].
+//! [`Format`], an arm in [`bytes()`].
 
 mod error;
 mod faces;

@@ -2,7 +2,7 @@
 
 use super::super::error::{Located, ReadErrorKind};
 use super::evaluate::Reading;
-use super::value::{Document, Statement, Value, place};
+use super::value::{Document, Statement, Value};
 use crate::solid::Place;
 
 /// A statement that is being evaluated.
@@ -115,28 +115,43 @@ impl Call<'_> {
         Located::at(self.place(), ReadErrorKind::Unsupported(what.into()))
     }
 
-    /// Warns of arguments that have no meaning here. Names that start with `$` have one
-    /// everywhere.
+    /// Warns of arguments that have no meaning here, or are given again. Names that start
+    /// with `$` have a meaning everywhere.
+    ///
+    /// Warnings stand at the statement: to find the place of an argument takes as long as
+    /// the text before it, too long where every statement has one.
     pub(super) fn warn_of_unknown(&self, reading: &mut Reading<'_>) {
-        let mut position = 0;
+        let (mut position, mut given) = (0, 0_u64);
         for argument in &self.document.arguments[self.range()] {
-            let what = match argument.name {
-                Some(name)
-                    if name.starts_with('$') || self.parameters.contains(&name) =>
-                {
-                    continue;
-                }
-                Some(name) => format!("no argument `{name}`"),
+            let parameter = match argument.name {
+                Some(name) if name.starts_with('$') => continue,
+                Some(name) => self.parameters.iter().position(|p| *p == name),
                 None => {
                     position += 1;
-                    if position <= self.parameters.len() {
-                        continue;
-                    }
-                    format!("only {} arguments without a name", self.parameters.len())
+                    Some(position - 1).filter(|p| *p < self.parameters.len())
                 }
             };
-            let message = format!("`{}` has {what}; this one is ignored", self.name());
-            reading.warn(place(self.document.text, argument.offset), message);
+            let node = self.name();
+            let message = match (parameter, argument.name) {
+                (Some(index), _) if given & (1 << index) == 0 => {
+                    given |= 1 << index;
+                    continue;
+                }
+                (Some(index), _) => {
+                    let name = self.parameters[index];
+                    format!("`{node}` has `{name}` more than once; the last one counts")
+                }
+                (None, Some(name)) => {
+                    format!("`{node}` has no argument `{name}`; it is ignored")
+                }
+                (None, None) => {
+                    let count = self.parameters.len();
+                    format!(
+                        "`{node}` has at most {count} arguments without a name; more are ignored"
+                    )
+                }
+            };
+            reading.warn(self.place(), message);
         }
     }
 

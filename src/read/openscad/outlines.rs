@@ -7,7 +7,7 @@ use super::arguments::Call;
 use super::curve::Round;
 use super::evaluate::Reading;
 use super::node::Shape;
-use super::polyhedron::chosen;
+use super::polyhedron::{chosen, warn_of_dropped};
 use super::solids::{is_size, radius};
 use crate::mesh::{Mesh, MeshError};
 use crate::solid::Solid;
@@ -56,17 +56,20 @@ pub(super) fn polygon(
                 .ok_or_else(|| call.wrong("points", "pairs of finite numbers", value))?,
         );
     }
+    let mut dropped = 0;
     let paths = match call.vector("paths")? {
         None => vec![points],
         Some(lists) => {
             let mut paths = Vec::with_capacity(lists.len());
             for list in lists {
-                let path = chosen(call, "paths", list, points.len(), reading)?;
+                let (path, others) = chosen(call, "paths", list, points.len())?;
+                dropped += others;
                 paths.push(path.into_iter().map(|i| points[i as usize]).collect());
             }
             paths
         }
     };
+    warn_of_dropped(call, dropped, reading);
     match Mesh::prism(&paths, 0.0, 1.0) {
         Ok(mesh) => Ok(Shape::Flat(Solid::mesh(mesh).placed(call.place()))),
         Err(MeshError::NoFaces) => Ok(Shape::Empty),

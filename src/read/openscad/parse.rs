@@ -151,7 +151,7 @@ impl<'a> Parser<'a> {
             } else {
                 self.value()?;
             }
-            self.document.arguments.push(Argument { name, offset, value });
+            self.document.arguments.push(Argument { name, value });
             match self.lexer.token {
                 Token::Symbol(b',') => self.lexer.advance()?,
                 Token::Symbol(b')') => {}

@@ -25,15 +25,18 @@ pub(super) fn polyhedron(
             })?,
         );
     }
+    let mut dropped = 0;
     let parameter = if call.value("faces").is_some() { "faces" } else { "triangles" };
     for value in call.vector(parameter)?.unwrap_or_default() {
-        let mut face = chosen(call, parameter, value, read.points.len(), reading)?;
+        let (mut face, others) = chosen(call, parameter, value, read.points.len())?;
+        dropped += others;
         // OpenSCAD's faces are clockwise, ours counter-clockwise.
         face.reverse();
         if face.len() > 2 {
             read.faces.push(face);
         }
     }
+    warn_of_dropped(call, dropped, reading);
     if read.faces.is_empty() {
         return Ok(Shape::Empty);
     }
@@ -46,16 +49,15 @@ pub(super) fn polyhedron(
     Ok(Shape::Solid(Solid::mesh(built.mesh).placed(place)))
 }
 
-/// The indices in a list that name points; others are dropped with a warning.
+/// The indices in a list that name points, and how many others it has, which OpenSCAD
+/// leaves out.
 pub(super) fn chosen(
     call: &Call<'_>,
     parameter: &str,
     list: u32,
     points: usize,
-    reading: &mut Reading<'_>,
-) -> Result<Vec<u32>, Located> {
-    let mut chosen = Vec::new();
-    let mut dropped = 0;
+) -> Result<(Vec<u32>, usize), Located> {
+    let (mut chosen, mut dropped) = (Vec::new(), 0);
     for value in call.elements(parameter, list)? {
         let expected = "lists of the numbers of points";
         let number = call.document.number(value);
@@ -65,15 +67,22 @@ pub(super) fn chosen(
             None => dropped += 1,
         }
     }
+    Ok((chosen, dropped))
+}
+
+/// Warns of indices that name no point.
+pub(super) fn warn_of_dropped(
+    call: &Call<'_>,
+    dropped: usize,
+    reading: &mut Reading<'_>,
+) {
     if dropped > 0 {
-        let place = call.document.place(list);
+        let name = call.name();
         let message = format!(
-            "`{}` names {dropped} points that do not exist; they are left out",
-            call.name()
+            "`{name}` names points that do not exist {dropped} times; they are left out"
         );
-        reading.warn(place, message);
+        reading.warn(call.place(), message);
     }
-    Ok(chosen)
 }
 
 /// A number as an index of so many points; fractions are cut off.

@@ -44,7 +44,6 @@ pub(super) struct Modifiers {
 #[derive(Debug)]
 pub(super) struct Argument<'a> {
     pub(super) name: Option<&'a str>,
-    pub(super) offset: u32,
     /// The index of its value.
     pub(super) value: u32,
 }
