@@ -104,8 +104,13 @@ impl Quadric {
         if discriminant <= 0.0 {
             return [all.filter(|_| a < 0.0), None];
         }
-        let q = -(b + discriminant.sqrt().copysign(b));
-        let (first, second) = (moved + q / a, moved + c / q);
+        let root = discriminant.sqrt();
+        let q = -(b + root.copysign(b));
+        // Zero has a sign, but the line has no side to choose there: both roots by one
+        // formula, so that the reversed line gives the same bits.
+        let (first, second) =
+            if b == 0.0 { (-root / a, root / a) } else { (q / a, c / q) };
+        let (first, second) = (moved + first, moved + second);
         let (first, second) = (first.min(second), first.max(second));
         if a > 0.0 {
             [Some([first, second]), None]
