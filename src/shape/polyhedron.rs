@@ -68,7 +68,7 @@ impl Surface for Polyhedron {
         let shear = Shear::new(origin, dir);
         faces.crossed(&Slabs::new(origin, dir, &faces.bounds()), |face| {
             let corners = mesh.corners(face as usize).map(|p| shear.map(p));
-            if let Some((t, sense)) = crossing(corners) {
+            if let Some((t, sense)) = crossing(corners, shear.speed) {
                 sink.crossing(t, face, sense);
             }
         });
@@ -89,10 +89,11 @@ impl Surface for Polyhedron {
 struct Shear {
     origin: DVec3,
     /// Which axes become the first, second and third: the third is the one along which the
-    /// line is steepest, and the first two are in the order that keeps a face that is
-    /// counter-clockwise seen against the line counter-clockwise.
+    /// line is steepest, and the first two follow it in turn, whichever way the line runs,
+    /// so that a line and its reverse are moved to the same side.
     axes: [usize; 3],
     shift: DVec2,
+    /// How fast the line runs along the third axis; negative if it runs against it.
     speed: f64,
 }
 
@@ -106,10 +107,7 @@ struct Corner {
 impl Shear {
     fn new(origin: DVec3, dir: DVec3) -> Self {
         let z = dir.abs().max_position();
-        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
-        if dir[z] < 0.0 {
-            (x, y) = (y, x);
-        }
+        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         let shift = DVec2::new(dir[x], dir[y]) / dir[z];
         Self { origin, axes: [x, y, z], shift, speed: dir[z] }
     }
@@ -126,9 +124,9 @@ impl Shear {
 
 /// Where the line passes through a triangle, and whether it goes in or out.
 ///
-/// A triangle that is counter-clockwise seen from where the line goes faces away from
-/// where it comes from, so the line comes out there.
-fn crossing([a, b, c]: [Corner; 3]) -> Option<(f64, Sense)> {
+/// A triangle that is counter-clockwise seen from where the third axis goes faces away from
+/// where it comes from, so a line along it comes out there.
+fn crossing([a, b, c]: [Corner; 3], speed: f64) -> Option<(f64, Sense)> {
     let bc = turn(b, c);
     let is_left = is_left_turn(bc, b, c)?;
     let ca = turn(c, a);
@@ -140,7 +138,7 @@ fn crossing([a, b, c]: [Corner; 3]) -> Option<(f64, Sense)> {
         return None;
     }
     let t = along([a, b, c], [bc, ca, ab]);
-    Some((t, if is_left { Sense::Exit } else { Sense::Enter }))
+    Some((t, if is_left == (speed > 0.0) { Sense::Exit } else { Sense::Enter }))
 }
 
 /// Twice the signed area of the triangle of the line, `a` and `b`; its sign is exact.
