@@ -38,7 +38,8 @@ fn regular(points: Vec<DVec3>, edge: f64) -> Mesh {
 
 /// The regular tetrahedron on four corners of the cube from −1 to 1.
 pub(crate) fn tetrahedron() -> Mesh {
-    let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+    let corners =
+        [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     regular(corners.map(DVec3::from_array).to_vec(), 8.0_f64.sqrt())
 }
 
@@ -51,7 +52,8 @@ pub(crate) fn octahedron() -> Mesh {
 /// The prism over a regular polygon of radius 1, from z = −1 to 1.
 pub(crate) fn prism(sides: u32) -> Mesh {
     let point = |i: u32| {
-        let (sin, cos) = (f64::from(i) / f64::from(sides) * std::f64::consts::TAU).sin_cos();
+        let (sin, cos) =
+            (f64::from(i) / f64::from(sides) * std::f64::consts::TAU).sin_cos();
         [dvec3(cos, sin, -1.0), dvec3(cos, sin, 1.0)]
     };
     let points = (0..sides).flat_map(point).collect();
@@ -128,9 +130,11 @@ pub(crate) fn uv_sphere(spokes: u32, rings: u32) -> Mesh {
         for spoke in 0..spokes {
             let (a, b) = (at(ring, spoke), at(ring, spoke + 1));
             let (c, d) = (at(ring + 1, spoke), at(ring + 1, spoke + 1));
-            faces.extend([[a, c, d], [a, d, b]].into_iter().filter(|[p, q, r]| {
-                p != q && q != r && r != p
-            }));
+            faces.extend(
+                [[a, c, d], [a, d, b]]
+                    .into_iter()
+                    .filter(|[p, q, r]| p != q && q != r && r != p),
+            );
         }
     }
     convex(points, faces)
@@ -175,10 +179,8 @@ pub(crate) fn grid_box(min: DVec3, max: DVec3, steps: i32) -> Mesh {
 /// for a corner, two for an edge along z.
 pub(crate) fn touching_cubes(shared: usize) -> Mesh {
     let low = if shared == 1 { -DVec3::ONE } else { dvec3(-1.0, -1.0, 0.0) };
-    let (a, b) = (
-        grid_box(DVec3::ZERO, DVec3::ONE, 1),
-        grid_box(low, low + DVec3::ONE, 1),
-    );
+    let (a, b) =
+        (grid_box(DVec3::ZERO, DVec3::ONE, 1), grid_box(low, low + DVec3::ONE, 1));
     let mut points = a.points().to_vec();
     let mut number = |p: DVec3| {
         let found = points.iter().position(|&q| q == p).unwrap_or_else(|| {

@@ -49,7 +49,7 @@ pub(crate) struct Feature {
 }
 
 /// Points nearer to a surface than this, as a fraction of the coordinates and sizes at
-/// hand, get no answer. Six orders above the rounding of well-conditioned maps, and far
+/// hand, which are of order 1, get no answer. Six orders above the rounding of well-conditioned maps, and far
 /// below what the tests are about.
 const NEAR: f64 = 1e-9;
 
@@ -77,7 +77,9 @@ impl Model {
     pub(crate) fn holds(&self, point: DVec3) -> Option<bool> {
         match self {
             Self::Leaf(leaf) => leaf.holds(point),
-            Self::Mapped(map, child) => child.holds(map.inverse().transform_point3(point)),
+            Self::Mapped(map, child) => {
+                child.holds(map.inverse().transform_point3(point))
+            }
             Self::Boolean(_, children) if children.is_empty() => Some(false),
             Self::Boolean(op, children) => {
                 let mut answers = children.iter().map(|child| child.holds(point));
@@ -97,7 +99,9 @@ impl Model {
     pub(crate) fn leaves(&self) -> Vec<(&Leaf, DAffine3)> {
         match self {
             Self::Leaf(leaf) => vec![(leaf, DAffine3::IDENTITY)],
-            Self::Boolean(_, children) => children.iter().flat_map(Self::leaves).collect(),
+            Self::Boolean(_, children) => {
+                children.iter().flat_map(Self::leaves).collect()
+            }
             Self::Mapped(map, child) => {
                 child.leaves().into_iter().map(|(leaf, m)| (leaf, *map * m)).collect()
             }
@@ -139,7 +143,9 @@ impl Leaf {
             Self::Cuboid { min, max } => Solid::cuboid_between(*min, *max),
             Self::Ball { radius } => Solid::ball(*radius),
             Self::Cylinder { radius, height } => Solid::cylinder(*radius, *height),
-            Self::Frustum { bottom, top, height } => Solid::frustum(*bottom, *top, *height),
+            Self::Frustum { bottom, top, height } => {
+                Solid::frustum(*bottom, *top, *height)
+            }
             Self::Paraboloid { radius, height } => Solid::paraboloid(*radius, *height),
             Self::OneSheet { waist, radius, height } => {
                 Solid::hyperboloid_of_one_sheet(*waist, *radius, *height)
@@ -166,7 +172,7 @@ impl Leaf {
             | Self::OneSheet { .. }
             | Self::TwoSheets { .. } => self.excess_of_revolved(p),
         };
-        let near = NEAR * (self.size() + p.length());
+        let near = NEAR * (1.0 + self.size() + p.length());
         if excess.abs() <= near { None } else { Some(excess < 0.0) }
     }
 
@@ -175,7 +181,8 @@ impl Leaf {
     fn excess_of_revolved(&self, p: DVec3) -> f64 {
         let [bottom, top] = self.ends();
         let across = p.truncate().length();
-        let wall = (across * across - self.square_of_radius(p.z)) / (across + self.size());
+        let wall =
+            (across * across - self.square_of_radius(p.z)) / (across + self.size());
         wall.max(bottom - p.z).max(p.z - top)
     }
 
@@ -236,9 +243,10 @@ impl Leaf {
     fn features(&self) -> Vec<DVec3> {
         match self {
             Self::Cuboid { min, max } => grid(*min, *max),
-            Self::Ball { radius } => {
-                DVec3::AXES.into_iter().flat_map(|a| [a * *radius, -a * *radius]).collect()
-            }
+            Self::Ball { radius } => DVec3::AXES
+                .into_iter()
+                .flat_map(|a| [a * *radius, -a * *radius])
+                .collect(),
             Self::HalfSpace { normal, offset } => {
                 vec![*normal * (*offset / normal.length_squared())]
             }
@@ -311,8 +319,11 @@ fn is_near([a, b, c]: [DVec3; 3], near: f64) -> bool {
 /// Where a ray passes through the surfaces of all leaves, in order: each leaf asked alone,
 /// half-spaces by their formula.
 pub(crate) fn crossings_of_leaves(model: &Model, ray: &Ray) -> Vec<f64> {
-    let mut all: Vec<f64> =
-        model.leaves().into_iter().flat_map(|(leaf, map)| alone(leaf, map, ray)).collect();
+    let mut all: Vec<f64> = model
+        .leaves()
+        .into_iter()
+        .flat_map(|(leaf, map)| alone(leaf, map, ray))
+        .collect();
     all.sort_by(f64::total_cmp);
     all
 }
@@ -320,8 +331,7 @@ pub(crate) fn crossings_of_leaves(model: &Model, ray: &Ray) -> Vec<f64> {
 fn alone(leaf: &Leaf, map: DAffine3, ray: &Ray) -> Vec<f64> {
     if let Leaf::HalfSpace { normal, offset } = leaf {
         let back = map.inverse();
-        let (o, d) =
-            (back.transform_point3(ray.origin), back.transform_vector3(ray.dir));
+        let (o, d) = (back.transform_point3(ray.origin), back.transform_vector3(ray.dir));
         let t = (offset - normal.dot(o)) / normal.dot(d);
         return if t.is_finite() { vec![t] } else { Vec::new() };
     }

@@ -50,7 +50,8 @@ pub(crate) fn symmetry() -> impl Strategy<Value = DMat3> {
 
 /// A well-conditioned affine map: a few moves, turns, stretches, mirrors and shears.
 pub(crate) fn map() -> impl Strategy<Value = DAffine3> {
-    let factor = || (0.5..2.0_f64, any::<bool>()).prop_map(|(f, m)| if m { -f } else { f });
+    let factor =
+        || (0.5..2.0_f64, any::<bool>()).prop_map(|(f, m)| if m { -f } else { f });
     let step = prop_oneof![
         place().prop_map(DAffine3::from_translation),
         symmetry().prop_map(DAffine3::from_mat3),
