@@ -20,7 +20,7 @@ pub(super) struct Contains {
     /// The model
     file: PathBuf,
     /// Points; without any, they are read from standard input, one on a line
-    #[arg(value_name = "X,Y,Z", allow_hyphen_values = true)]
+    #[arg(value_name = "X,Y,Z")]
     points: Vec<Numbers<3>>,
     #[command(flatten)]
     reading: Reading,

@@ -19,6 +19,7 @@ mod report;
 mod sampling;
 mod volume;
 
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -114,7 +115,7 @@ impl Command {
 
 /// Runs the program. Usage errors end in clap, with code 2.
 pub(crate) fn main() -> ExitCode {
-    let Cli { command, global } = Cli::parse();
+    let Cli { command, global } = Cli::parse_from(std::env::args_os().map(as_value));
     let mut out = io::BufWriter::new(io::stdout().lock());
     let result = start_threads(global)
         .and_then(|()| command.run(global, &mut out))
@@ -133,6 +134,20 @@ pub(crate) fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// An argument that is a list of numbers is no option though it begins with a minus: a
+/// space in front tells clap, and does not matter to whoever reads the numbers.
+fn as_value(argument: OsString) -> OsString {
+    let is_list = argument.to_str().is_some_and(|text| {
+        text.starts_with('-') && text != "-" && numbers::list(text).is_ok()
+    });
+    if !is_list {
+        return argument;
+    }
+    let mut value = OsString::from(" ");
+    value.push(argument);
+    value
 }
 
 #[cfg(feature = "parallel")]

@@ -24,10 +24,10 @@ pub(super) struct Rays {
     /// The model
     file: PathBuf,
     /// Where the ray starts
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "dir")]
+    #[arg(long, value_name = "X,Y,Z", requires = "dir")]
     origin: Option<Numbers<3>>,
     /// Where it goes
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "origin")]
+    #[arg(long, value_name = "X,Y,Z", requires = "origin")]
     dir: Option<Numbers<3>>,
     #[command(flatten)]
     reading: Reading,

@@ -33,7 +33,7 @@ pub(super) struct Render {
     imgsize: [u32; 2],
     /// Where to look from: x,y,z, turned by rx,ry,rz degrees, from distance d; or from the
     /// eye ex,ey,ez to the centre cx,cy,cz
-    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true, value_parser = camera, help_heading = "View")]
+    #[arg(long, value_name = "NUMBERS", value_parser = camera, help_heading = "View")]
     camera: Option<Camera>,
     /// o or orthogonal: parallel rays; p or perspective: rays from the eye
     #[arg(long, value_name = "o|p", value_parser = projection, default_value = "p", hide_default_value = true, help_heading = "View")]

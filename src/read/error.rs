@@ -57,9 +57,12 @@ pub enum ReadErrorKind {
         /// What it is.
         found: Box<str>,
     },
-    /// The text is no `.obj`.
-    #[error("{0}")]
+    /// A line of an `.obj` breaks its grammar.
+    #[error("no line of an .obj file: {0}")]
     Obj(tobj::LoadError),
+    /// A face of an `.obj` names a point that is not in the file.
+    #[error("a face names a point that does not exist")]
+    NoSuchPoint,
     /// The points and faces do not bound a solid.
     #[error("{0}")]
     Mesh(MeshError),

@@ -21,6 +21,10 @@ pub(super) fn read(text: &[u8]) -> std::result::Result<Faces, Located> {
     let options = LoadOptions::default();
     match tobj::load_obj_buf(&mut lines, &options, no_materials) {
         Ok((models, _)) => collect(&models),
+        // Found out when all lines have been taken.
+        Err(LoadError::FaceVertexOutOfBounds) => {
+            Err(Located::nowhere(ReadErrorKind::NoSuchPoint))
+        }
         Err(error) => {
             let place = Place { line: lines.at.max(1), column: 1 };
             Err(Located::at(place, ReadErrorKind::Obj(error)))
