@@ -38,7 +38,7 @@ impl Fibonacci {
     }
 }
 
-/// A number that looks random and depends on the seed and the indices alone: SplitMix64
+/// A number that looks random and depends on the seed and the indices alone: `SplitMix64`
 /// (G. L. Steele, D. Lea, C. H. Flood, "Fast Splittable Pseudorandom Number Generators",
 /// OOPSLA 2014), fed with one after the other.
 pub(crate) fn hash(seed: u64, indices: &[u64]) -> u64 {

@@ -1,5 +1,6 @@
 //! The program as its users meet it: what it prints where, and its exit codes.
 #![cfg(feature = "cli")]
+#![expect(clippy::float_cmp, reason = "these answers are exact")]
 
 use std::fs;
 use std::io::Write;

@@ -1,5 +1,6 @@
 //! The models of this repository against closed forms, Manifold and OpenSCAD.
 
+#[expect(dead_code, reason = "models need no random solids")]
 mod support;
 #[path = "support/manifold.rs"]
 mod with_manifold;

@@ -140,16 +140,18 @@ impl Report {
             self.leaves_by_kind.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
         writeln!(out, "leaves     {} ({})", self.leaves, kinds.join(", "))?;
         writeln!(out, "faces      {}", self.faces)?;
-        writeln!(
-            out,
-            "operators  {} unions, {} intersections, {} differences",
-            self.unions, self.intersections, self.differences
-        )?;
+        let operators = [
+            (self.unions, "union"),
+            (self.intersections, "intersection"),
+            (self.differences, "difference"),
+        ];
+        let operators = operators.map(|(n, name)| format!("{n} {name}"));
+        writeln!(out, "operators  {}", operators.join(", "))?;
         writeln!(out, "maps       {}", self.maps)?;
         writeln!(out, "depth      {}", self.depth)?;
         writeln!(
             out,
-            "curves     {} true curves, {} deliberate polygons, {} made polygons",
+            "curves     {} true, {} deliberate polygons, {} made polygons by --curves",
             self.true_curves, self.polygons, self.faceted
         )?;
         let bounds = scene.bounds();

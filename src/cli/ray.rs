@@ -96,6 +96,11 @@ fn chord(ray: &Ray, span: &Span) -> f64 {
     span.length() * ray.dir.length()
 }
 
+/// Added to zero: the sum of nothing would be −0.
+fn total(ray: &Ray, spans: &[Span]) -> f64 {
+    spans.iter().fold(0.0, |sum, span| sum + chord(ray, span))
+}
+
 fn print(
     out: &mut dyn Write,
     scene: &Scene,
@@ -105,7 +110,7 @@ fn print(
 ) -> anyhow::Result<()> {
     if !global.quiet {
         let Ray { origin, dir } = *ray;
-        let total: f64 = spans.iter().map(|span| chord(ray, span)).sum();
+        let total = total(ray, spans);
         let count = spans.len();
         let plural = if count == 1 { "" } else { "s" };
         writeln!(
@@ -161,7 +166,7 @@ impl RayJson {
         Self {
             origin: ray.origin.to_array(),
             dir: ray.dir.to_array(),
-            chord: spans.iter().map(|span| chord(ray, span)).sum(),
+            chord: total(ray, spans),
             spans: spans
                 .iter()
                 .map(|span| SpanJson {

@@ -20,7 +20,7 @@ use super::{Answer, Global};
 /// Draw a picture
 ///
 /// The view is OpenSCAD's: without --camera the whole model from the front, the right and
-/// above. color() is honoured; other surfaces are yellow, and green where they were cut.
+/// above. `color()` is honoured; other surfaces are yellow, and green where they were cut.
 #[derive(Args, Debug)]
 pub(super) struct Render {
     /// The model

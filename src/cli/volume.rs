@@ -65,8 +65,6 @@ impl Volume {
             ));
         }
         if global.verbose {
-            let [low, high] = volume.interval;
-            writeln!(out, "interval  {low} to {high}")?;
             writeln!(out, "method    {}", volume.method.name())?;
             writeln!(out, "rays      {}", volume.rays)?;
             writeln!(

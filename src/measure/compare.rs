@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::estimate::{Estimate, Method};
-use super::lattice::{Beam, Progress, Round, Sampling, Tally, rounds, student};
+use super::lattice::{Beam, Round, Sampling, Tally, rounds, student};
 use super::volume::{Chords, estimate};
+use crate::progress::Progress;
 use crate::ray::{Ray, Span};
 use crate::scene::{CompileError, Scene, Tracer};
 use crate::solid::Solid;

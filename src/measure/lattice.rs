@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use glam::{DVec2, DVec3};
 
 use crate::aabb::Aabb;
+use crate::progress::Progress;
 use crate::ray::Ray;
 use crate::sampling::{Fibonacci, hash, unit};
 
@@ -52,9 +53,6 @@ impl Default for Sampling {
         Self { rel_tol: 1e-4, max_rays: 1 << 26, time_limit: None, seed: 0 }
     }
 }
-
-/// Called from any thread with a number of rays just done.
-pub type Progress<'a> = &'a (dyn Fn(u64) + Sync);
 
 /// Something that adds up over rays.
 pub(super) trait Tally: Default + Send {

@@ -7,5 +7,5 @@ mod volume;
 
 pub use compare::{Comparison, Verdict, Worst, compare};
 pub use estimate::{Estimate, Method};
-pub use lattice::{Progress, Sampling};
+pub use lattice::Sampling;
 pub use volume::{volume, volume_with};

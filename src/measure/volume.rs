@@ -2,8 +2,9 @@
 
 use super::estimate::{Estimate, Method};
 use super::lattice::{
-    Beam, ENOUGH_HITS, Progress, Round, Sampling, Tally, most_hits, rounds, student,
+    Beam, ENOUGH_HITS, Round, Sampling, Tally, most_hits, rounds, student,
 };
+use crate::progress::Progress;
 use crate::scene::Scene;
 
 /// Chords of one solid.

@@ -297,7 +297,7 @@ mod tests {
             let expected = DVec3::new(numbers[0], numbers[1], numbers[2]);
             assert!(eye.distance(expected) < 1e-13, "{eye} is not {expected}");
             assert!(right.z.abs() < 1e-15, "level");
-            assert!(up.z > 0.0 || up.y == 1.0, "upright, not {up}");
+            assert!(up.z > 0.0 || up == DVec3::Y, "upright, not {up}");
         }
     }
 
@@ -334,6 +334,6 @@ mod tests {
             assert_eq!(Camera::framing(&bounds), Camera::default());
         }
         let vast = Aabb::new(DVec3::splat(-1e300), DVec3::splat(1e300));
-        assert_eq!(Camera::framing(&vast).distance, Camera::default().distance);
+        assert!(Camera::framing(&vast).distance.is_finite());
     }
 }

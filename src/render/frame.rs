@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::{Progress, View, chunks};
+use super::{View, chunks};
+use crate::progress::Progress;
 use crate::ray::{Crossing, Ray, Sense};
 use crate::scene::Scene;
 

@@ -39,7 +39,3 @@ pub use scheme::Scheme;
 #[cfg(feature = "image")]
 pub use shade::shade;
 pub use view::View;
-
-/// What is told about the work done: called from any thread with the number of rays
-/// traced since its last call. `&|_| ()` listens to nothing.
-pub type Progress<'a> = &'a (dyn Fn(u64) + Sync);

@@ -6,7 +6,8 @@ use image::RgbImage;
 
 use super::frame::{TILE, trace_rows};
 use super::shade::{Shader, write};
-use super::{Camera, Look, Progress, Scheme, View};
+use super::{Camera, Look, Scheme, View};
+use crate::progress::Progress;
 use crate::scene::Scene;
 
 /// How a picture is made of what a camera sees.

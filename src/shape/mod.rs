@@ -3,8 +3,8 @@
 //! # To add a primitive
 //!
 //! 1. describe it in [`Primitive`] (`primitive.rs`), with its name and the check of its sizes;
-//! 2. write its file here, with the three methods of [`Surface`] and its bounds;
-//! 3. add it to [`Shape`] and the two matches below;
+//! 2. write its file here, with the three methods of `Surface` and its bounds;
+//! 3. add it to `Shape` and the three matches below;
 //! 4. give it a maker in `solid.rs`;
 //! 5. and a keyword in the reader, if a format has one.
 

@@ -17,7 +17,7 @@ pub(crate) fn manifold(solid: &Solid) -> Manifold {
         }
         View::Mapped(map, child) => mapped(&manifold(child), map),
         View::Tagged(child) => manifold(child),
-        other => panic!("{other:?} has no facets"),
+        View::Primitive(_) | _ => panic!("{solid:?} has no facets"),
     }
 }
 

@@ -1,0 +1,211 @@
+//! What cameras see, as text, and what pictures are made of it.
+
+use glam::{DVec3, dvec3};
+use solidray::render::{Camera, Frame, Projection, trace};
+use solidray::{Scene, Sense, Solid};
+
+const SIZE: [u32; 2] = [64, 48];
+
+fn compile(solid: &Solid) -> Scene {
+    Scene::compile(solid).expect("a sound solid")
+}
+
+fn frame(scene: &Scene, camera: &Camera) -> Frame {
+    trace(scene, &camera.view(SIZE, &scene.bounds()), [0.5, 0.5], &|_| ())
+}
+
+/// A line for each second row, as letters are twice as high as wide: the number of the
+/// leaf that is seen, or a dot.
+fn art(frame: &Frame) -> String {
+    let [width, height] = frame.size();
+    let letter = |x, y| match frame.hit(x, y) {
+        Some(hit) => char::from_digit(hit.leaf % 36, 36).unwrap_or('?'),
+        None => '.',
+    };
+    let row = |y| (0..width).map(|x| letter(x, y)).collect::<String>();
+    (0..height).step_by(2).map(row).collect::<Vec<_>>().join("\n")
+}
+
+/// A plate with a round hole and a ball on it.
+fn plate() -> Solid {
+    let hole = Solid::cylinder(4.0, 8.0).translated(dvec3(-8.0, 0.0, -4.0));
+    let ball = Solid::ball(5.0).translated(dvec3(8.0, 0.0, 4.0));
+    Solid::cuboid(dvec3(36.0, 20.0, 4.0)) - hole + ball
+}
+
+#[test]
+fn plate_from_the_default_camera() {
+    let scene = compile(&plate());
+    let camera = Camera::framing(&scene.bounds());
+    insta::assert_snapshot!(art(&frame(&scene, &camera)));
+}
+
+#[test]
+fn plate_in_parallel_from_above() {
+    let scene = compile(&plate());
+    let camera = Camera { rotation_deg: DVec3::ZERO, ..Camera::framing(&scene.bounds()) }
+        .with_projection(Projection::Orthographic);
+    insta::assert_snapshot!(art(&frame(&scene, &camera)));
+}
+
+#[test]
+fn a_cube_covers_the_pixels_it_should() {
+    let scene = compile(&Solid::cuboid(DVec3::splat(10.0)));
+    let front = Camera {
+        rotation_deg: dvec3(90.0, 0.0, 0.0),
+        distance: 10.0 / 11.25_f64.to_radians().tan(),
+        ..Camera::default()
+    };
+    // The picture is 20 units high, 48 pixels: the cube's face is 24 pixels wide.
+    let seen = frame(&scene, &front.with_projection(Projection::Orthographic));
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            let inside = (20..44).contains(&x) && (12..36).contains(&y);
+            assert_eq!(seen.hit(x, y).is_some(), inside, "pixel ({x}, {y})");
+        }
+    }
+}
+
+#[test]
+fn orthographic_cameras_see_what_is_behind_them() {
+    let scene = compile(&Solid::ball(1.0).translated(dvec3(0.0, -500.0, 0.0)));
+    let camera = Camera::gimbal([0.0, 0.0, 0.0, 90.0, 0.0, 0.0, 20.0]).expect("finite");
+    assert_eq!(frame(&scene, &camera).depths(), None);
+    let parallel = camera.with_projection(Projection::Orthographic);
+    let seen = frame(&scene, &parallel);
+    let hit = seen.hit(32, 24).expect("the ball is in the middle");
+    let place = seen.ray(32, 24).at(hit.t);
+    assert!((place.distance(dvec3(0.0, -500.0, 0.0)) - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn an_eye_inside_sees_where_rays_come_out() {
+    let scene = compile(&Solid::ball(50.0));
+    let camera = Camera { distance: 10.0, ..Camera::default() };
+    let seen = frame(&scene, &camera);
+    assert!((0..SIZE[1]).all(|y| {
+        (0..SIZE[0]).all(|x| seen.hit(x, y).is_some_and(|hit| hit.sense == Sense::Exit))
+    }));
+}
+
+#[test]
+fn empty_scenes_and_empty_frames() {
+    let scene = compile(&Solid::empty());
+    assert_eq!(frame(&scene, &Camera::framing(&scene.bounds())).depths(), None);
+    let ball = compile(&Solid::ball(1.0));
+    for size in [[0, 0], [0, 7], [7, 0]] {
+        let view = Camera::default().view(size, &ball.bounds());
+        assert_eq!(trace(&ball, &view, [0.5, 0.5], &|_| ()).hit(0, 0), None);
+    }
+}
+
+#[cfg(feature = "image")]
+mod pictures {
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    use image::RgbImage;
+    use solidray::Color;
+    use solidray::render::{Look, Style, picture, shade};
+
+    use super::*;
+
+    /// How many pixels differ by more than `step` of 255 in any channel.
+    fn differing(a: &RgbImage, b: &RgbImage, step: u8) -> usize {
+        assert_eq!(a.dimensions(), b.dimensions());
+        a.pixels()
+            .zip(b.pixels())
+            .filter(|(a, b)| a.0.iter().zip(b.0).any(|(&a, b)| a.abs_diff(b) > step))
+            .count()
+    }
+
+    fn painted(solid: &Solid, style: &Style) -> RgbImage {
+        let scene = compile(solid);
+        let camera = Camera::framing(&scene.bounds());
+        picture(&scene, &camera, SIZE, style, &|_| ())
+    }
+
+    #[test]
+    fn one_sample_is_a_shaded_frame() {
+        let scene = compile(&plate());
+        let camera = Camera::framing(&scene.bounds());
+        let frame = frame(&scene, &camera);
+        for look in Look::ALL {
+            let style = Style { look, ..Style::default() };
+            let shaded = shade(&scene, &frame, look, &style.scheme);
+            let image = picture(&scene, &camera, SIZE, &style, &|_| ());
+            assert_eq!(differing(&shaded, &image, 0), 0, "{look:?}");
+        }
+    }
+
+    #[test]
+    fn samples_change_edges_only() {
+        let style = |samples| Style { samples, ..Style::default() };
+        let [few, many, more] = [1, 16, 64].map(|n| painted(&plate(), &style(n)));
+        let edges = differing(&few, &many, 12);
+        assert!((50..500).contains(&edges), "{edges} pixels of 3072");
+        let changes = differing(&many, &more, 12);
+        assert!(changes < edges / 4, "{changes} pixels, {edges} at edges");
+    }
+
+    #[test]
+    fn looks_have_their_grounds_and_colors() {
+        let corner = |look| {
+            *painted(&plate(), &Style { look, ..Style::default() }).get_pixel(0, 0)
+        };
+        assert_eq!(corner(Look::Shaded).0, [0xff, 0xff, 0xe5]);
+        assert_eq!(corner(Look::Leaf).0, [0xff, 0xff, 0xe5]);
+        assert_eq!(corner(Look::Normal).0, [0, 0, 0]);
+        assert_eq!(corner(Look::Depth).0, [0, 0, 0]);
+
+        let blue = Solid::ball(1.0).colored(Color::rgb(0.0, 0.0, 1.0));
+        let [r, g, b] = painted(&blue, &Style::default()).get_pixel(32, 24).0;
+        assert!(b > 150 && r < 80 && g < 80, "{r} {g} {b}");
+    }
+
+    #[test]
+    fn a_normal_seen_from_above_is_z() {
+        let scene = compile(&Solid::cuboid(DVec3::ONE));
+        let above =
+            Camera { rotation_deg: DVec3::ZERO, ..Camera::framing(&scene.bounds()) };
+        let style = Style { look: Look::Normal, ..Style::default() };
+        let image = picture(&scene, &above, SIZE, &style, &|_| ());
+        assert_eq!(image.get_pixel(32, 24).0, [128, 128, 255]);
+    }
+
+    #[test]
+    fn the_nearest_is_white() {
+        let style = Style { look: Look::Depth, ..Style::default() };
+        let image = painted(&plate(), &style);
+        assert_eq!(image.pixels().map(|p| p.0[0]).max(), Some(255));
+        let grey = |v: u8| v == 0 || v >= 38;
+        assert!(image.pixels().all(|p| grey(p.0[0]) && p.0[0] == p.0[2]));
+    }
+
+    #[test]
+    fn all_rays_are_reported() {
+        let scene = compile(&plate());
+        for look in [Look::Shaded, Look::Depth] {
+            let style = Style { look, samples: 3, ..Style::default() };
+            let rays = AtomicU64::new(0);
+            let count = |n| {
+                rays.fetch_add(n, Ordering::Relaxed);
+            };
+            picture(&scene, &Camera::default(), SIZE, &style, &count);
+            assert_eq!(rays.into_inner(), style.rays(SIZE));
+        }
+    }
+
+    #[cfg(feature = "parallel")]
+    #[test]
+    fn threads_change_nothing() {
+        let style = Style { samples: 4, ..Style::default() };
+        let on = |threads| {
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .expect("threads can be made")
+                .install(|| painted(&plate(), &style))
+        };
+        assert_eq!(on(1), on(5));
+    }
+}
