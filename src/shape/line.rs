@@ -9,11 +9,13 @@ use crate::ray::Ray;
 /// A line in the frame in which leaves compute: its origin is near the scene and its
 /// direction near unit length.
 ///
-/// The origin is the middle of the stretch inside the scene's bounds, so that no leaf sees
+/// The origin is about the middle of the stretch inside the scene's bounds, so that no leaf sees
 /// an origin farther away than the scene is large: the error of a crossing grows with that
 /// distance (R. Haines, J. Günther, T. Akenine-Möller, "Precision Improvements for
 /// Ray/Sphere Intersection", Ray Tracing Gems, ch. 7, 2019). It depends on the line and the
-/// scene alone. The direction is scaled by a power of two, which rounds nothing.
+/// scene alone. It is a round number of steps along the direction: then it rounds nothing
+/// either where coordinates have few digits, and planes at whole millimetres are crossed at
+/// whole numbers. The direction is scaled by a power of two, which rounds nothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
     /// The point at `t = 0` of this line.
@@ -39,7 +41,7 @@ impl Line {
         if near > far || !near.is_finite() || !far.is_finite() {
             return None;
         }
-        let offset = 0.5 * (near + far);
+        let offset = coarse(0.5 * (near + far), far - near);
         Some(Self { origin: ray.origin + offset * dir, dir, offset, scale })
     }
 
@@ -52,6 +54,15 @@ impl Line {
     pub(crate) fn slabs(&self, bounds: &Aabb) -> Slabs {
         Slabs::new(self.origin, self.dir, bounds)
     }
+}
+
+/// A number that differs from `x` by at most 1/256 of `width` and has no more digits than
+/// that takes.
+fn coarse(x: f64, width: f64) -> f64 {
+    let per_unit = 256.0 * inverse_power_of_two(width);
+    let rounded = (x * per_unit).round() / per_unit;
+    // Scenes as small as the smallest numbers have no room to round.
+    if rounded.is_finite() { rounded } else { x }
 }
 
 /// The power of two that brings a positive number into 1..2, or as near as one factor goes
