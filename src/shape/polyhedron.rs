@@ -7,8 +7,9 @@
 //! remain a closed mesh. Whether the line passes a face is then a question about three
 //! two-dimensional orientations with exact signs (J. R. Shewchuk, "Adaptive Precision
 //! Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997). A zero is
-//! decided as if the line were moved by (ε, ε²) (H. Edelsbrunner, E. P. Mücke, "Simulation
-//! of Simplicity", 1990), so the line is in general position to the deformed mesh, and
+//! decided as if the line were moved by (ε, ε², ε³) in the world (H. Edelsbrunner,
+//! E. P. Mücke, "Simulation of Simplicity", 1990), to the side to which it also counts as
+//! moved within a face of a box, so the line is in general position to the deformed mesh, and
 //! goes in as often as it comes out. The shear is that of S. Woop, C. Benthin, I. Wald,
 //! "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013, whose inclusive edge tests
 //! suffice for first hits but not for this.
@@ -65,10 +66,11 @@ impl Surface for Polyhedron {
         let origin = self.to_local.point(line.origin);
         let dir = self.to_local.direction(line.dir);
         let IndexedMesh { mesh, faces } = &*self.mesh;
-        let shear = Shear::new(origin, dir);
+        let moves = DVec3::AXES.map(|axis| self.to_local.direction(axis));
+        let shear = Shear::new(origin, dir, moves);
         faces.crossed(&Slabs::new(origin, dir, &faces.bounds()), |face| {
             let corners = mesh.corners(face as usize).map(|p| shear.map(p));
-            if let Some((t, sense)) = crossing(corners, shear.speed) {
+            if let Some((t, sense)) = crossing(corners, &shear) {
                 sink.crossing(t, face, sense);
             }
         });
@@ -95,6 +97,9 @@ struct Shear {
     shift: DVec2,
     /// How fast the line runs along the third axis; negative if it runs against it.
     speed: f64,
+    /// Where the moved line is seen: by each world axis, the first before the others, and
+    /// by both axes of the plane should rounding have made those parallel.
+    moves: [DVec2; 5],
 }
 
 /// A point seen along the line: how far beside it, and where along it.
@@ -105,11 +110,13 @@ struct Corner {
 }
 
 impl Shear {
-    fn new(origin: DVec3, dir: DVec3) -> Self {
+    fn new(origin: DVec3, dir: DVec3, moves: [DVec3; 3]) -> Self {
         let z = dir.abs().max_position();
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         let shift = DVec2::new(dir[x], dir[y]) / dir[z];
-        Self { origin, axes: [x, y, z], shift, speed: dir[z] }
+        let [first, second, third] = moves.map(|m| DVec2::new(m[x], m[y]) - shift * m[z]);
+        let moves = [first, second, third, DVec2::X, DVec2::Y];
+        Self { origin, axes: [x, y, z], shift, speed: dir[z], moves }
     }
 
     fn map(&self, point: DVec3) -> Corner {
@@ -126,34 +133,48 @@ impl Shear {
 ///
 /// A triangle that is counter-clockwise seen from where the third axis goes faces away from
 /// where it comes from, so a line along it comes out there.
-fn crossing([a, b, c]: [Corner; 3], speed: f64) -> Option<(f64, Sense)> {
-    let bc = turn(b, c);
-    let is_left = is_left_turn(bc, b, c)?;
-    let ca = turn(c, a);
-    if is_left_turn(ca, c, a)? != is_left {
+fn crossing([a, b, c]: [Corner; 3], shear: &Shear) -> Option<(f64, Sense)> {
+    let bc = turn(b.beside, c.beside);
+    let is_left = shear.is_left_turn(bc, b, c)?;
+    let ca = turn(c.beside, a.beside);
+    if shear.is_left_turn(ca, c, a)? != is_left {
         return None;
     }
-    let ab = turn(a, b);
-    if is_left_turn(ab, a, b)? != is_left {
+    let ab = turn(a.beside, b.beside);
+    if shear.is_left_turn(ab, a, b)? != is_left {
         return None;
     }
     let t = along([a, b, c], [bc, ca, ab]);
-    Some((t, if is_left == (speed > 0.0) { Sense::Exit } else { Sense::Enter }))
+    Some((t, if is_left == (shear.speed > 0.0) { Sense::Exit } else { Sense::Enter }))
 }
 
 /// Twice the signed area of the triangle of the line, `a` and `b`; its sign is exact.
-fn turn(a: Corner, b: Corner) -> f64 {
+fn turn(a: DVec2, b: DVec2) -> f64 {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
-    orient2d(coord(a.beside), coord(b.beside), Coord { x: 0.0, y: 0.0 })
+    orient2d(coord(a), coord(b), Coord { x: 0.0, y: 0.0 })
 }
 
-/// Whether that triangle turns left when the line is moved by (ε, ε²); `None` for two
-/// corners in the same place.
-///
-/// The moved area is `turn + ε (a.y − b.y) + ε² (b.x − a.x)`.
-fn is_left_turn(turn: f64, a: Corner, b: Corner) -> Option<bool> {
-    let (a, b) = (a.beside, b.beside);
-    [turn, a.y - b.y, b.x - a.x].into_iter().find(|&x| x != 0.0).map(|x| x > 0.0)
+impl Shear {
+    /// Whether the triangle of the line, `a` and `b`, of which `turn` is the area, turns
+    /// left when the line is moved; `None` for two corners in the same place.
+    ///
+    /// A move by m adds m × (a − b) to the area. Where the area is zero, a and b are in one
+    /// line with the origin, so a − b is a multiple of either: the sign of the product with
+    /// that one is exact, that of the product with a rounded difference would not be.
+    fn is_left_turn(&self, turn_of_edge: f64, a: Corner, b: Corner) -> Option<bool> {
+        if turn_of_edge != 0.0 {
+            return Some(turn_of_edge > 0.0);
+        }
+        let step = a.beside - b.beside;
+        let along = if a.beside == DVec2::ZERO { b.beside } else { a.beside };
+        let axis = along.abs().max_position();
+        if step[axis] == 0.0 {
+            return None;
+        }
+        let reversed = (step[axis] > 0.0) != (along[axis] > 0.0);
+        let sides = self.moves.map(|m| turn(m, along));
+        sides.into_iter().find(|&side| side != 0.0).map(|side| (side > 0.0) != reversed)
+    }
 }
 
 /// Where along the line the triangle is passed, given the areas opposite its corners.
