@@ -1,0 +1,89 @@
+//! Trees too deep and too wide for recursion and for anything quadratic.
+
+#[expect(dead_code, reason = "these trees are made, not drawn by lot")]
+mod support;
+
+use glam::{DVec3, dvec3};
+use solidray::{Op, Ray, Solid};
+use support::{ends, ends_in, scene};
+
+const MANY: u32 = 100_000;
+
+/// Runs something on a stack of 256 KiB: a frame for each of 100,000 nodes would not fit.
+fn on_a_small_stack(test: impl FnOnce() + Send + 'static) {
+    let thread = std::thread::Builder::new().stack_size(256 * 1024).spawn(test);
+    thread.expect("a thread can be had").join().expect("the test's thread did not panic");
+}
+
+/// Place `i` on a square grid of 400 by 250 with unit steps.
+fn cell(i: u32) -> DVec3 {
+    dvec3(f64::from(i % 400), f64::from(i / 400), 0.0)
+}
+
+fn pearl(i: u32) -> Solid {
+    Solid::ball(0.25).translated(cell(i))
+}
+
+/// Along a row of the grid.
+fn row() -> Ray {
+    Ray::new(dvec3(-10.0, 7.0, 0.0), DVec3::X)
+}
+
+#[test]
+fn a_chain_of_differences_compiles_answers_and_drops() {
+    on_a_small_stack(|| {
+        let plate =
+            Solid::cuboid_between(dvec3(-1.0, -1.0, -1.0), dvec3(400.0, 250.0, 1.0));
+        let drilled = (0..MANY).fold(plate, |rest, i| rest - pearl(i));
+        let list = ends(&drilled, &row());
+        assert_eq!(list.len(), 401);
+        assert!((list[1][0] - 10.25).abs() < 1e-12 && (list[1][1] - 10.75).abs() < 1e-12);
+    });
+}
+
+/// a − (b − (c − …)): every level is another node, and complements alternate.
+#[test]
+fn a_chain_of_differences_from_the_right_compiles_answers_and_drops() {
+    on_a_small_stack(|| {
+        let chain = (0..MANY).rev().fold(Solid::empty(), |rest, i| pearl(i) - rest);
+        assert_eq!(ends(&chain, &Ray::new(dvec3(-10.0, 0.0, 0.0), DVec3::X)).len(), 1);
+        let shells = (1..=1000)
+            .rev()
+            .fold(Solid::empty(), |rest, i| Solid::ball(f64::from(1001 - i)) - rest);
+        assert_eq!(ends(&shells, &Ray::new(DVec3::ZERO, DVec3::X)).len(), 1000);
+    });
+}
+
+#[test]
+fn a_chain_of_maps_compiles_answers_and_drops() {
+    on_a_small_stack(|| {
+        let step = dvec3(2.0_f64.powi(-10), 0.0, 0.0);
+        let moved = (0..MANY).fold(Solid::ball(1.0), |solid, _| solid.translated(step));
+        let middle = f64::from(MANY) / 1024.0;
+        let ray = Ray::new(DVec3::ZERO, DVec3::X);
+        assert_eq!(ends(&moved, &ray), [[middle - 1.0, middle + 1.0]]);
+    });
+}
+
+#[test]
+fn a_wide_union_answers_from_what_a_ray_meets() {
+    on_a_small_stack(|| {
+        let pearls = scene(&Solid::boolean(Op::Union, (0..MANY).map(pearl)));
+        assert_eq!(ends_in(&pearls, &row()).len(), 400);
+        let mut tracer = pearls.tracer();
+        for i in 0..MANY {
+            assert!(tracer.contains(cell(i)) && !tracer.contains(cell(i) + 0.3));
+        }
+    });
+}
+
+#[test]
+fn a_shared_subtree_outlives_the_trees_that_hold_it() {
+    on_a_small_stack(|| {
+        let shared =
+            (0..MANY).fold(Solid::ball(1.0), |solid, _| solid.translated(DVec3::ZERO));
+        let holder = shared.clone() + Solid::cuboid(DVec3::ONE);
+        drop(holder);
+        assert_eq!(ends(&shared, &support::along_x(0.0, 0.0)), [[9.0, 11.0]]);
+    });
+}
