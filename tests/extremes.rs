@@ -1,0 +1,222 @@
+//! Precision where it is hardest: far away, at grazes, near apexes, at odd scales.
+//!
+//! All rays have coordinates that are exact in binary, so the right answers are known to
+//! the last digit. u = 2⁻⁵³ is the rounding unit.
+
+#[expect(dead_code, reason = "extremes are chosen, not drawn by lot")]
+mod support;
+
+use glam::{DAffine3, DVec3, dvec3};
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+use solidray::{Ray, Solid};
+use support::strategies::{aims, model};
+use support::{along_x, ends, ends_in, scene};
+
+const U: f64 = 0.5 * f64::EPSILON;
+
+/// Positions are exact to eight rounding units of the largest length at hand: twice the
+/// worst of numerous trials of roots from a re-centred origin.
+fn assert_at(found: &[[f64; 2]], exact: [f64; 2], length: f64, largest: f64, what: &str) {
+    assert_eq!(found.len(), 1, "{what}: {found:?} instead of {exact:?}");
+    for (found, exact) in found[0].into_iter().zip(exact) {
+        let error = (found - exact).abs() * length;
+        assert!(error <= 8.0 * U * largest, "{what}: {found} − {exact}: {error:e}");
+    }
+}
+
+/// Rays of direction (3, 4, 12) or (3, 4, 0) at up to 0.94 of a radius of 1 from the
+/// middle, from `far` directions away. In plane (3, 4) they are moved by `side` (4, −3).
+fn offsets() -> impl Iterator<Item = f64> {
+    (-48..=48).map(|i| f64::from(i) / 256.0)
+}
+
+#[test]
+fn a_ball_is_hit_from_as_far_as_1e12_radii() {
+    let (ball, dir) = (scene(&Solid::ball(1.0)), dvec3(3.0, 4.0, 12.0));
+    for power in 0..=40 {
+        let far = 2.0_f64.powi(power);
+        for side in offsets() {
+            let ray = Ray::new(side * dvec3(4.0, -3.0, 0.0) - far * dir, dir);
+            let half = (1.0 - 25.0 * side * side).sqrt() / 13.0;
+            let what = format!("from {far} at {side}");
+            let exact = [far - half, far + half];
+            assert_at(&ends_in(&ball, &ray), exact, 13.0, 13.0 * far + 1.0, &what);
+        }
+    }
+}
+
+#[test]
+fn a_ball_is_hit_in_a_scene_1e12_times_as_large() {
+    let dir = dvec3(3.0, 4.0, 12.0);
+    for power in 4..=40 {
+        let far = 2.0_f64.powi(power);
+        let speck = Solid::cuboid(DVec3::ONE).translated(2.0 * far * dir);
+        let large = scene(&(Solid::ball(1.0) + speck));
+        for side in offsets() {
+            let ray = Ray::new(side * dvec3(4.0, -3.0, 0.0), dir);
+            let half = (1.0 - 25.0 * side * side).sqrt() / 13.0;
+            let list = ends_in(&large, &ray);
+            let what = format!("far {far}, {side}");
+            assert_at(&list[..1], [-half, half], 13.0, 26.0 * far, &what);
+        }
+    }
+}
+
+#[test]
+fn a_cylinder_is_hit_from_as_far_as_1e12_radii() {
+    let (rod, dir) = (scene(&Solid::cylinder(1.0, 2.0)), dvec3(3.0, 4.0, 0.0));
+    for power in 0..=40 {
+        let far = 2.0_f64.powi(power);
+        for side in offsets() {
+            let ray = Ray::new(dvec3(4.0 * side, -3.0 * side, 1.0) - far * dir, dir);
+            let half = (1.0 - 25.0 * side * side).sqrt() / 5.0;
+            let exact = [far - half, far + half];
+            let what = format!("from {far} at {side}");
+            assert_at(&ends_in(&rod, &ray), exact, 5.0, 5.0 * far + 1.0, &what);
+        }
+    }
+}
+
+#[test]
+fn a_cone_is_hit_from_as_far_as_1e12_radii() {
+    // At half its height this cone has radius 1.
+    let (cone, dir) = (scene(&Solid::frustum(2.0, 0.0, 2.0)), dvec3(3.0, 4.0, 0.0));
+    for power in 0..=40 {
+        let far = 2.0_f64.powi(power);
+        for side in offsets() {
+            let ray = Ray::new(dvec3(4.0 * side, -3.0 * side, 1.0) - far * dir, dir);
+            let half = (1.0 - 25.0 * side * side).sqrt() / 5.0;
+            let exact = [far - half, far + half];
+            let what = format!("from {far} at {side}");
+            assert_at(&ends_in(&cone, &ray), exact, 5.0, 5.0 * far + 2.0, &what);
+        }
+    }
+}
+
+#[test]
+fn a_cone_is_exact_beside_its_apex() {
+    let cone = scene(&Solid::frustum(0.0, 1.0, 1.0));
+    for power in 1..=100 {
+        let near = 2.0_f64.powi(-power);
+        for part in [0.0, 0.5, 0.75] {
+            let ray = Ray::new(dvec3(0.0, part * near, near), DVec3::X);
+            let half = near * (1.0_f64 - part * part).sqrt();
+            let what = format!("{near} from the apex at {part}");
+            // The reference point rounds to steps of the scene, exactly here.
+            assert_at(&ends_in(&cone, &ray), [-half, half], 1.0, near, &what);
+        }
+    }
+}
+
+#[test]
+fn through_an_apex_exactly_there_is_one_span_or_none() {
+    let cone = scene(&Solid::frustum(0.0, 1.0, 1.0));
+    for (dir, count) in [
+        (DVec3::Z, 1),
+        (dvec3(0.5, 0.0, 1.0), 1),
+        (dvec3(-0.25, 0.5, 1.0), 1),
+        (DVec3::X, 0),
+        (dvec3(1.0, 0.5, 0.25), 0),
+        (dvec3(1.0, 0.0, 1.0), 0),
+    ] {
+        for dir in [dir, -dir] {
+            let list = ends_in(&cone, &Ray::new(DVec3::ZERO, dir));
+            assert_eq!(list.len(), count, "{dir}: {list:?}");
+        }
+    }
+}
+
+/// A chord at 1 − δ of the radius is √(δ (2 − δ)) long on either side, and one rounding of
+/// the data moves that by u / δ of itself.
+#[test]
+fn grazing_chords_are_as_exact_as_their_data() {
+    for solid in [Solid::ball(1.0), Solid::cylinder(1.0, 2.0)] {
+        let solid = scene(&solid);
+        for power in 1..=52 {
+            let graze = 2.0_f64.powi(-power);
+            let ray = Ray::new(dvec3(0.0, 1.0 - graze, 0.0), DVec3::X);
+            let list = ends_in(&solid, &ray);
+            let half = (graze * (2.0 - graze)).sqrt();
+            let near = half * (4.0 * U / graze + 8.0 * U);
+            assert_eq!(list.len(), 1, "{graze:e}");
+            assert!((list[0][1] - half).abs() <= near, "{graze:e}: {list:?}, {half}");
+            assert!((list[0][0] + half).abs() <= near, "{graze:e}: {list:?}, {half}");
+        }
+        assert!(ends_in(&solid, &along_x(1.0, 0.0)).is_empty(), "tangent");
+        assert!(ends_in(&solid, &along_x(1.0 + f64::EPSILON, 0.0)).is_empty());
+    }
+}
+
+#[test]
+fn a_line_almost_along_a_cylinder_is_as_exact_as_any() {
+    let long = Solid::cylinder(1.0, 2.0_f64.powi(60)).translated(dvec3(
+        0.0,
+        0.0,
+        -(2.0_f64.powi(59)),
+    ));
+    let long = scene(&long);
+    for power in 0..=40 {
+        let slant = 2.0_f64.powi(-power);
+        let list = ends_in(&long, &Ray::new(DVec3::ZERO, dvec3(slant, 0.0, 1.0)));
+        assert_eq!(list.len(), 1, "{slant:e}");
+        assert!((list[0][1] * slant - 1.0).abs() <= 8.0 * U, "{slant:e}: {list:?}");
+        assert!((list[0][0] * slant + 1.0).abs() <= 8.0 * U, "{slant:e}: {list:?}");
+    }
+    let along = ends_in(&long, &Ray::new(dvec3(0.5, 0.5, 0.0), DVec3::Z));
+    assert_eq!(along, [[-(2.0_f64.powi(59)), 2.0_f64.powi(59)]]);
+}
+
+#[test]
+fn scenes_scaled_by_a_power_of_two_give_the_same_bits() {
+    let mut runner = TestRunner::deterministic();
+    let cases = (model(), aims());
+    for _ in 0..200 {
+        let case = cases.new_tree(&mut runner).expect("nothing is rejected").current();
+        let (model, aims) = case;
+        let plain = scene(&model.solid());
+        for power in [-200, -30, 30, 200] {
+            let factor = 2.0_f64.powi(power);
+            let grow = DAffine3::from_scale(DVec3::splat(factor));
+            let scaled = scene(&model.solid().mapped(grow));
+            for ray in aims.iter().map(|aim| aim.ray(&model)) {
+                let image = Ray::new(factor * ray.origin, factor * ray.dir);
+                assert_eq!(ends_in(&plain, &ray), ends_in(&scaled, &image), "{factor:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn zeros_of_either_sign_and_the_smallest_numbers_are_directions_like_others() {
+    let solid = Solid::cuboid(DVec3::splat(2.0)) - Solid::cylinder(0.5, 3.0)
+        + Solid::mesh(support::meshes::octahedron()).translated(dvec3(2.0, 0.0, 0.0));
+    let scene = scene(&solid);
+    for (y, z) in [(0.25, 0.25), (1.0, 1.0), (0.0, 0.0), (-1.0, 0.5), (0.5, -1.0)] {
+        let list = |dy: f64, dz: f64| {
+            ends_in(&scene, &Ray::new(dvec3(-10.0, y, z), dvec3(1.0, dy, dz)))
+        };
+        let level = list(0.0, 0.0);
+        assert_eq!(level, list(-0.0, 0.0));
+        assert_eq!(level, list(0.0, -0.0));
+        // Too small to move the line by a bit, except off a face that it lies in.
+        for tiny in [1e-300, -1e-300, 5e-324, -5e-324] {
+            let moved = list(tiny, -tiny);
+            assert!(
+                moved == level || y.abs() >= 1.0 || z.abs() >= 1.0 || y == 0.0,
+                "{moved:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn directions_may_be_as_long_or_short_as_they_like() {
+    for length in [1e-300, 1e-100, 1e100, 1e300] {
+        let ray = Ray::new(dvec3(-10.0, 0.0, 0.0), dvec3(length, 0.0, 0.0));
+        let list = ends(&Solid::ball(1.0), &ray);
+        let exact = [9.0 / length, 11.0 / length];
+        assert_at(&list, exact, length, 22.0, &format!("{length:e}"));
+    }
+}
