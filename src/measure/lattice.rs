@@ -67,35 +67,50 @@ pub(super) struct Round<T> {
     pub(super) size: u64,
 }
 
-/// The rays parallel to the longest edge of a box, which cross the smallest face.
+/// Parallel rays that cover a box, all but along its longest edge.
+///
+/// They lean a little. Models are full of faces and cylinders along the axes, and seen
+/// exactly along one of them the length of a chord jumps at such a silhouette, which costs
+/// a lattice a quarter of an order (error N^-3/4); seen at an angle it rises steadily.
 pub(super) struct Beam {
     bounds: Aabb,
-    axis: usize,
+    /// The axes along and across the rays.
+    axes: [usize; 3],
 }
+
+/// How far a ray leans on its way through the box, in widths of the box.
+const LEAN: DVec2 = DVec2::new(0.31, 0.23);
 
 impl Beam {
     pub(super) fn new(bounds: Aabb) -> Self {
-        Self { bounds, axis: bounds.size().max_position() }
+        let axis = bounds.size().max_position();
+        Self { bounds, axes: [axis, (axis + 1) % 3, (axis + 2) % 3] }
     }
 
-    /// The area of the face that the rays cross.
+    /// The area that the rays cross at right angles to the longest edge: with room for those
+    /// that lean into the box from the side.
     pub(super) fn area(&self) -> f64 {
-        let size = self.bounds.size();
-        size[(self.axis + 1) % 3] * size[(self.axis + 2) % 3]
+        let [_, u, v] = self.axes;
+        let (size, room) = (self.bounds.size(), DVec2::ONE + LEAN);
+        size[u] * room.x * size[v] * room.y
     }
 
-    /// How far the rays go through the box.
+    /// How far the rays go through the box, in steps of their direction.
     pub(super) fn depth(&self) -> f64 {
-        self.bounds.size()[self.axis]
+        self.bounds.size()[self.axes[0]]
     }
 
-    /// The ray at a place in the unit square; its direction has length one.
+    /// The ray at a place in the unit square; it advances by one along the longest edge for
+    /// each step of its direction, so the volume is the mean chord in steps times the area.
     fn ray(&self, at: DVec2) -> Ray {
+        let [w, u, v] = self.axes;
         let (size, mut origin) = (self.bounds.size(), self.bounds.center());
-        let (u, v) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
-        origin[u] = self.bounds.min[u] + at.x * size[u];
-        origin[v] = self.bounds.min[v] + at.y * size[v];
-        Ray::new(origin, DVec3::AXES[self.axis])
+        let mut dir = DVec3::AXES[w];
+        for (axis, at, lean) in [(u, at.x, LEAN.x), (v, at.y, LEAN.y)] {
+            origin[axis] += (at - 0.5) * (1.0 + lean) * size[axis];
+            dir[axis] = lean * size[axis] / size[w];
+        }
+        Ray::new(origin, dir)
     }
 }
 
