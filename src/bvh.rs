@@ -69,6 +69,12 @@ impl Bvh {
         Self { nodes, items }
     }
 
+    /// How much memory it takes.
+    #[cfg(test)]
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&*self.nodes) + size_of_val(&*self.items)
+    }
+
     /// The box around everything.
     pub(crate) fn bounds(&self) -> Aabb {
         self.nodes[0].bounds

@@ -128,3 +128,26 @@ impl Scene {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+
+    /// The figures that the documentation of [`Scene`] gives.
+    #[test]
+    fn leaves_take_the_memory_they_are_said_to_take() {
+        let at = |i: u32| {
+            dvec3(f64::from(i % 100), f64::from(i / 100 % 100), f64::from(i / 10_000))
+        };
+        let balls = (0..20_000).map(|i| Solid::ball(0.3).translated(at(i)));
+        let scene =
+            Scene::compile(&Solid::boolean(crate::Op::Union, balls)).expect("balls");
+        let bytes = scene.hierarchy.bytes()
+            + size_of_val(&*scene.literals)
+            + size_of_val(&*scene.shapes)
+            + size_of_val(&*scene.parts)
+            + size_of_val(&*scene.places);
+        assert!(bytes <= 300 * 20_000, "{} bytes a leaf", bytes / 20_000);
+    }
+}

@@ -208,3 +208,24 @@ fn along_edge(a: Corner, b: Corner) -> f64 {
     let axis = step.abs().max_position();
     a.along + (b.along - a.along) * (-a.beside[axis] / step[axis])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The figure that the documentation of [`Scene`](crate::Scene) gives.
+    #[test]
+    fn triangles_take_the_memory_they_are_said_to_take() {
+        // Many tetrahedra in a row are a mesh like any other.
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+        let step = |i: u32| DVec3::new(f64::from(i), f64::from(i % 7), f64::from(i % 13));
+        let points =
+            (0..5_000).flat_map(|i| corners.map(|p| p + 2.0 * step(i))).collect();
+        let faces =
+            (0..5_000).flat_map(|i| faces.map(|f| f.map(|k| k + 4 * i))).collect();
+        let mesh = Arc::new(Mesh::new(points, faces).expect("tetrahedra are closed"));
+        let bytes = IndexedMesh::new(mesh).faces.bytes();
+        assert!(bytes <= 110 * 20_000, "{} bytes a triangle", bytes / 20_000);
+    }
+}
