@@ -173,6 +173,16 @@ fn normals_point_outward() {
 }
 
 #[test]
+fn a_shared_face_belongs_to_the_first_leaf_that_makes_it() {
+    let owner = |solid: &Solid| spans(&scene(solid), &along_x(0.25, 0.5))[0].enter.leaf;
+    let (a, b) = (cube(2.0), cube(2.0).scaled(dvec3(1.0, 2.0, 2.0)));
+    assert_eq!(owner(&(a.clone() + b.clone())), 0);
+    assert_eq!(owner(&(a.clone() & b.clone())), 0, "both are needed");
+    let aside = cube(1.0).translated(dvec3(0.9, 0.0, 0.5));
+    assert_eq!(owner(&((a & aside) + b)), 2, "the first is in a part that is not there");
+}
+
+#[test]
 fn first_hit_starts_at_the_origin() {
     let scene = scene(&cube(2.0));
     let mut tracer = scene.tracer();

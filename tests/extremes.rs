@@ -110,6 +110,41 @@ fn a_cone_is_exact_beside_its_apex() {
     }
 }
 
+/// The middle of the rod is far from where the line passes it, the vertex of the parabola
+/// is not.
+#[test]
+fn a_rod_1e12_radii_long_is_hit_at_its_end() {
+    for power in 4..=40 {
+        let height = 2.0_f64.powi(power);
+        let rod = scene(&Solid::cylinder(1.0, height));
+        for side in offsets() {
+            let through = dvec3(4.0 * side, -3.0 * side, 15.0 / 16.0 * height);
+            let ray = Ray::new(through, dvec3(3.0, 4.0, 1.0));
+            let half = (1.0 - 25.0 * side * side).sqrt() / 5.0;
+            let what = format!("{height} high at {side}");
+            assert_at(&ends_in(&rod, &ray), [-half, half], 5.0, height, &what);
+        }
+    }
+}
+
+/// Through (4 s, −3 s, 1) e along (3, 4, 1) the cone x² + y² ≤ z² is met where
+/// 24 t² − 2 e t = e² (1 − 25 s²).
+#[test]
+fn an_oblique_line_near_an_apex_is_exact() {
+    let cone = scene(&Solid::frustum(0.0, 1.0, 1.0));
+    for power in 4..=40 {
+        let near = 2.0_f64.powi(-power);
+        for side in offsets() {
+            let through = near * dvec3(4.0 * side, -3.0 * side, 1.0);
+            let ray = Ray::new(through, dvec3(3.0, 4.0, 1.0));
+            let root = (25.0 - 600.0 * side * side).sqrt();
+            let exact = [(1.0 - root) / 24.0 * near, (1.0 + root) / 24.0 * near];
+            let what = format!("{near} from the apex at {side}");
+            assert_at(&ends_in(&cone, &ray), exact, 5.0, 1.0, &what);
+        }
+    }
+}
+
 #[test]
 fn through_an_apex_exactly_there_is_one_span_or_none() {
     let cone = scene(&Solid::frustum(0.0, 1.0, 1.0));
