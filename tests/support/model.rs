@@ -13,8 +13,8 @@ use solidray::{Mesh, Op, Ray, Solid};
 #[derive(Clone, Debug)]
 pub(crate) enum Model {
     Leaf(Leaf),
-    Boolean(Op, Vec<Model>),
-    Mapped(DAffine3, Box<Model>),
+    Boolean(Op, Vec<Self>),
+    Mapped(DAffine3, Box<Self>),
 }
 
 /// A leaf by its sizes, as the makers of [`Solid`] take them.
