@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::DAffine3;
 use thiserror::Error;
 
+use super::intern::{Extent, intern};
 use super::program::{Combine, Literal, Program};
 use super::{Part, Scene};
 use crate::aabb::Aabb;
@@ -13,7 +14,7 @@ use crate::bvh::Bvh;
 use crate::color::Color;
 use crate::mesh::Mesh;
 use crate::op::Op;
-use crate::shape::{BadParameter, IndexedMesh, Primitive, Shape};
+use crate::shape::{BadParameter, IndexedMesh, Placed, Primitive, Shape};
 use crate::solid::{Kind, Place, Solid, Tag};
 
 /// Why a solid cannot be compiled.
@@ -101,6 +102,7 @@ struct Compiler {
     parts: Vec<u32>,
     places: Vec<Option<Place>>,
     boxes: Vec<Aabb>,
+    conditions: Vec<f64>,
     part_list: Vec<Part>,
     part_numbers: HashMap<PartKey, u32>,
     meshes: HashMap<*const Mesh, Arc<IndexedMesh>>,
@@ -118,6 +120,7 @@ pub(super) fn compile(solid: &Solid) -> Result<Scene, CompileError> {
         parts: Vec::new(),
         places: Vec::new(),
         boxes: Vec::new(),
+        conditions: Vec::new(),
         part_list: Vec::new(),
         part_numbers: HashMap::new(),
         meshes: HashMap::new(),
@@ -229,7 +232,7 @@ impl Compiler {
 
     fn add_leaf(
         &mut self,
-        (shape, bounds): (Shape, Aabb),
+        Placed { shape, bounds, condition }: Placed,
         task: &Task<'_>,
         context: &Context,
     ) -> Result<(), CompileError> {
@@ -240,6 +243,7 @@ impl Compiler {
         self.literals.push(Literal { parent: task.parent, complement: task.complement });
         self.shapes.push(shape);
         self.boxes.push(bounds);
+        self.conditions.push(condition);
         self.places.push(context.place);
         let part = self.part(context);
         self.parts.push(part);
@@ -263,10 +267,17 @@ impl Compiler {
 
     /// Keeps for the search only what can matter: within the solid's bounds, a leaf is as
     /// good as its part inside them, and outside them nothing is inside anyway.
-    fn finish(self) -> Result<Scene, CompileError> {
+    fn finish(mut self) -> Result<Scene, CompileError> {
         let bounds = self.program.bounds(&self.literals, &self.boxes);
         if !bounds.is_empty() && !bounds.is_bounded() {
             return Err(CompileError::Unbounded);
+        }
+        // An empty solid is asked nothing.
+        if bounds.is_bounded() {
+            let leaves = self.boxes.iter().zip(&self.conditions);
+            let extents: Vec<Extent> =
+                leaves.map(|(leaf, &c)| Extent::new(leaf, &bounds, c)).collect();
+            intern(&mut self.shapes, &extents);
         }
         let clipped: Vec<Aabb> =
             self.boxes.iter().map(|b| b.intersection(bounds)).collect();

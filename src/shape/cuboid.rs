@@ -1,21 +1,29 @@
-//! Boxes under any affine map: three slabs.
+//! Boxes under any affine map: six planes.
 
 use glam::DVec3;
 
 use super::place::Frame;
-use super::slab::Slab;
+use super::plane::Plane;
 use super::{Line, Sink, Surface};
 use crate::aabb::Aabb;
 
 /// A parallelepiped. Faces 0 to 5 are −x, +x, −y, +y, −z, +z of the box in its own frame.
 #[derive(Clone, Debug)]
 pub(crate) struct Cuboid {
-    slabs: [Slab; 3],
+    pub(super) planes: [Plane; 6],
 }
 
 impl Cuboid {
     pub(crate) fn new(frame: &Frame, min: DVec3, max: DVec3) -> Self {
-        Self { slabs: std::array::from_fn(|i| Slab::new(frame, i, min[i], max[i])) }
+        let planes = std::array::from_fn(|face| {
+            let axis = DVec3::AXES[face / 2];
+            if face % 2 == 0 {
+                Plane::new(frame, -axis, axis * min)
+            } else {
+                Plane::new(frame, axis, axis * max)
+            }
+        });
+        Self { planes }
     }
 
     pub(crate) fn bounds(frame: &Frame, min: DVec3, max: DVec3) -> Aabb {
@@ -25,21 +33,12 @@ impl Cuboid {
 
 impl Surface for Cuboid {
     fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
-        let (mut enter, mut exit) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
-        for (slab, base) in self.slabs.iter().zip([0, 2, 4]) {
-            let stretch = slab.stretch(line);
-            if stretch.enter > enter.0 {
-                enter = (stretch.enter, base + stretch.faces[0]);
-            }
-            if stretch.exit < exit.0 {
-                exit = (stretch.exit, base + stretch.faces[1]);
-            }
-        }
-        sink.stretch(enter, exit);
+        let stretch = Plane::stretch(&self.planes, line);
+        sink.stretch(stretch.enter, stretch.exit);
     }
 
     fn normal(&self, _point: DVec3, face: u32) -> DVec3 {
-        self.slabs[(face / 2) as usize % 3].outward(face % 2)
+        self.planes[face as usize % 6].outward()
     }
 
     fn faces(&self) -> u32 {

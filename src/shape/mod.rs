@@ -12,10 +12,11 @@ mod cuboid;
 mod half_space;
 mod line;
 mod place;
+mod plane;
 mod polyhedron;
 mod primitive;
 mod quadric;
-mod slab;
+mod wall;
 
 use std::sync::Arc;
 
@@ -27,10 +28,12 @@ use cuboid::Cuboid;
 use half_space::HalfSpace;
 pub(crate) use line::Line;
 use place::Frame;
+pub(crate) use plane::Plane;
 pub(crate) use polyhedron::IndexedMesh;
 use polyhedron::Polyhedron;
 pub use primitive::{BadParameter, Primitive, Profile};
 use quadric::Quadric;
+pub(crate) use wall::Wall;
 
 /// What a leaf owes.
 pub(crate) trait Surface {
@@ -54,15 +57,21 @@ pub(crate) enum Shape {
     Quadric(Quadric),
 }
 
+/// A leaf in its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed {
+    pub(crate) shape: Shape,
+    /// A box around it, perhaps infinite.
+    pub(crate) bounds: Aabb,
+    /// The condition number of its map.
+    pub(crate) condition: f64,
+}
+
 impl Shape {
-    /// A primitive under a map, and its bounds; or the determinant of a map that cannot be
-    /// inverted.
-    pub(crate) fn place(
-        primitive: &Primitive,
-        map: DAffine3,
-    ) -> Result<(Self, Aabb), f64> {
+    /// A primitive under a map; or the determinant of a map that cannot be inverted.
+    pub(crate) fn place(primitive: &Primitive, map: DAffine3) -> Result<Placed, f64> {
         let frame = Frame::new(map)?;
-        Ok(match *primitive {
+        let (shape, bounds) = match *primitive {
             Primitive::Cuboid { min, max } => (
                 Self::Cuboid(Cuboid::new(&frame, min, max)),
                 Cuboid::bounds(&frame, min, max),
@@ -76,18 +85,37 @@ impl Shape {
                 let bounds = leaf.bounds();
                 (Self::HalfSpace(leaf), bounds)
             }
-        })
+        };
+        Ok(Placed { shape, bounds, condition: frame.condition() })
     }
 
-    /// A mesh under a map, and its bounds; or the determinant of a map that cannot be
-    /// inverted.
+    /// A mesh under a map; or the determinant of a map that cannot be inverted.
     pub(crate) fn place_mesh(
         mesh: Arc<IndexedMesh>,
         map: DAffine3,
-    ) -> Result<(Self, Aabb), f64> {
+    ) -> Result<Placed, f64> {
         let frame = Frame::new(map)?;
         let bounds = Polyhedron::bounds(&frame, &mesh);
-        Ok((Self::Polyhedron(Polyhedron::new(&frame, mesh)), bounds))
+        let shape = Self::Polyhedron(Polyhedron::new(&frame, mesh));
+        Ok(Placed { shape, bounds, condition: frame.condition() })
+    }
+
+    /// The planes of the leaf.
+    pub(crate) fn planes_mut(&mut self) -> &mut [Plane] {
+        match self {
+            Self::Cuboid(leaf) => &mut leaf.planes,
+            Self::HalfSpace(leaf) => &mut leaf.planes,
+            Self::Quadric(leaf) => leaf.planes.as_mut().map_or(&mut [], |p| p),
+            Self::Polyhedron(_) => &mut [],
+        }
+    }
+
+    /// The curved wall of the leaf.
+    pub(crate) fn wall_mut(&mut self) -> Option<&mut Wall> {
+        match self {
+            Self::Quadric(leaf) => Some(&mut leaf.wall),
+            Self::Cuboid(_) | Self::HalfSpace(_) | Self::Polyhedron(_) => None,
+        }
     }
 
     /// What kind of leaf it is, as in [`Primitive::name`].

@@ -32,6 +32,14 @@ impl Frame {
         }
     }
 
+    /// The condition number of the linear part, from its Frobenius norm and that of its
+    /// inverse: 1 for rotations and uniform scales.
+    pub(crate) fn condition(&self) -> f64 {
+        let norm =
+            |m: &DMat3| m.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
+        norm(&self.world_from_local.matrix3) * norm(&self.inverse) / 3.0
+    }
+
     /// A local point in the world.
     pub(crate) fn point(&self, local: DVec3) -> DVec3 {
         self.world_from_local.transform_point3(local)
@@ -77,10 +85,10 @@ impl Frame {
 
 /// The way from the world into a leaf's frame. The translation is taken off first: that
 /// rounds less than the inverse of the whole map.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ToLocal {
-    origin: DVec3,
-    linear: DMat3,
+    pub(crate) origin: DVec3,
+    pub(crate) linear: DMat3,
 }
 
 impl ToLocal {

@@ -1,0 +1,81 @@
+//! Planes in world coordinates, and what lies on the inner side of all of some.
+
+use glam::DVec3;
+
+use super::Line;
+use super::place::Frame;
+
+/// One side of a plane: the points with `normal · p ≤ offset`, or `≥` if it is `above`.
+///
+/// Planes are kept in world coordinates and in one form (see [`Plane::new`]), so that those
+/// which coincide can be given equal bits and then give equal bits for every line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plane {
+    pub(crate) normal: DVec3,
+    pub(crate) offset: f64,
+    pub(crate) above: bool,
+}
+
+/// A stretch of a line and the numbers of the planes that begin and end it.
+pub(crate) struct Stretch {
+    pub(crate) enter: (f64, u32),
+    pub(crate) exit: (f64, u32),
+}
+
+impl Plane {
+    /// The inner side of the plane through a local point with a local outward normal.
+    ///
+    /// The normal is divided by its largest component and its first component that is not
+    /// zero is positive: one form for each direction, exact for directions along an axis.
+    pub(crate) fn new(frame: &Frame, outward: DVec3, point: DVec3) -> Self {
+        let normal = frame.normal(outward);
+        let scaled = normal / normal.abs().max_element();
+        let first = scaled.to_array().into_iter().find(|&c| c != 0.0).unwrap_or(1.0);
+        let above = first < 0.0;
+        let normal = if above { -scaled } else { scaled };
+        Self { normal, offset: normal.dot(frame.point(point)), above }
+    }
+
+    /// The outward normal.
+    pub(crate) fn outward(&self) -> DVec3 {
+        if self.above { -self.normal } else { self.normal }
+    }
+
+    /// From where to where a line is inside: half of it, all or nothing.
+    ///
+    /// A line within the plane is inside if it would be after a small move along the normal:
+    /// solids on the two sides of a plane share such lines out.
+    fn inside(&self, line: &Line) -> [f64; 2] {
+        let speed = self.normal.dot(line.dir);
+        let to_plane = self.offset - self.normal.dot(line.origin);
+        if speed == 0.0 {
+            return if (to_plane <= 0.0) == self.above {
+                [f64::NEG_INFINITY, f64::INFINITY]
+            } else {
+                [f64::INFINITY, f64::NEG_INFINITY]
+            };
+        }
+        let t = to_plane / speed;
+        if (speed > 0.0) == self.above {
+            [t, f64::INFINITY]
+        } else {
+            [f64::NEG_INFINITY, t]
+        }
+    }
+
+    /// The stretch of a line on the inner side of all planes; may be empty or infinite.
+    pub(crate) fn stretch(planes: &[Self], line: &Line) -> Stretch {
+        let mut stretch =
+            Stretch { enter: (f64::NEG_INFINITY, 0), exit: (f64::INFINITY, 0) };
+        for (face, plane) in (0..).zip(planes) {
+            let [from, to] = plane.inside(line);
+            if from > stretch.enter.0 {
+                stretch.enter = (from, face);
+            }
+            if to < stretch.exit.0 {
+                stretch.exit = (to, face);
+            }
+        }
+        stretch
+    }
+}

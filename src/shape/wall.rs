@@ -1,0 +1,352 @@
+//! Curved walls: where a line is inside a quadric, without regard to its ends.
+//!
+//! # The roots
+//!
+//! Along a line, `q = x² + y² − ρ(z)` is `A t² + 2 B t + C`. Its roots lose all digits when
+//! the line's origin is far away compared to the size of the solid, because C is then a
+//! small difference of large squares; no care with the discriminant brings them back.
+//! So the origin is moved: first to the point closest to the middle of the solid, then to
+//! the vertex of the parabola, where B is zero but for rounding, the discriminant is
+//! −A C without cancellation, and C is a product of a sum and a difference of lengths
+//! (numbers for the closest approach: Haines, Günther, Akenine-Möller, Ray Tracing Gems,
+//! ch. 7, 2019). The second move is left out when the vertex is far away: then the line is
+//! almost parallel to the surface there, A is almost zero and |A C| is small against B².
+//! The root of smaller size is C / q with q = −(B ± √D), as usual.
+
+use glam::{DMat3, DVec3};
+
+use super::Line;
+use super::place::ToLocal;
+use super::primitive::Profile;
+
+/// A quadric that nothing cuts, `x² + y² ≤ ρ(z)` in its own frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wall {
+    pub(crate) profile: Profile,
+    pub(crate) to_local: ToLocal,
+    /// The heights between which lines are looked for.
+    pub(crate) ends: [f64; 2],
+    /// The solid between the ends has its middle at this height on the axis.
+    middle: f64,
+    /// No point of the solid is farther from the middle.
+    reach: f64,
+}
+
+impl Wall {
+    /// The wall of which the part between two heights is wanted.
+    pub(crate) fn new(profile: Profile, to_local: ToLocal, ends: [f64; 2]) -> Self {
+        // The whole ball has the same middle in every frame.
+        let ends =
+            if let Profile::Ball { radius } = profile { [-radius, radius] } else { ends };
+        let [bottom, top] = ends;
+        let radius = profile.largest_radius(bottom, top);
+        let middle = 0.5 * (bottom + top);
+        let reach = (0.5 * (top - bottom)).hypot(radius);
+        Self { profile, to_local, ends, middle, reach }
+    }
+
+    /// A normal of any length, outward, at a world point.
+    pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
+        let p = self.to_local.point(point);
+        self.to_local.normal_to_world(self.profile.half_gradient(p))
+    }
+
+    /// Where `q ≤ 0` on a line: one or two stretches, perhaps infinite.
+    pub(crate) fn inside(&self, line: &Line) -> [Option<[f64; 2]>; 2] {
+        let origin = self.to_local.point(line.origin);
+        let dir = self.to_local.direction(line.dir);
+        let a = self.profile.quadratic(dir);
+        let mut moved = self.closest_approach(origin, dir, a);
+        let mut p = origin + moved * dir;
+        let mut b = self.profile.linear(p, dir);
+        let to_vertex = -b / a;
+        if self.is_near(to_vertex, dir) {
+            p += to_vertex * dir;
+            moved += to_vertex;
+            b = self.profile.linear(p, dir);
+        }
+        let c = self.profile.value(p);
+        let all = Some([f64::NEG_INFINITY, f64::INFINITY]);
+        if a == 0.0 {
+            let root = moved - 0.5 * c / b;
+            return if b > 0.0 {
+                [Some([f64::NEG_INFINITY, root]), None]
+            } else if b < 0.0 {
+                [Some([root, f64::INFINITY]), None]
+            } else {
+                [all.filter(|_| c < 0.0), None]
+            };
+        }
+        let discriminant = b * b - a * c;
+        if discriminant <= 0.0 {
+            return [all.filter(|_| a < 0.0), None];
+        }
+        let root = discriminant.sqrt();
+        let q = -(b + root.copysign(b));
+        // Zero has a sign, but the line has no side to choose there: both roots by one
+        // formula, so that the reversed line gives the same bits.
+        let (first, second) =
+            if b == 0.0 { (-root / a, root / a) } else { (q / a, c / q) };
+        let (first, second) = (moved + first, moved + second);
+        let (first, second) = (first.min(second), first.max(second));
+        if a > 0.0 {
+            [Some([first, second]), None]
+        } else {
+            [Some([f64::NEG_INFINITY, first]), Some([second, f64::INFINITY])]
+        }
+    }
+}
+
+impl Wall {
+    /// How far along a line it comes closest to the middle; to the axis of a cylinder, which
+    /// has no middle: then it does not matter how much of the cylinder is wanted.
+    fn closest_approach(&self, origin: DVec3, dir: DVec3, quadratic: f64) -> f64 {
+        if let Profile::Cylinder { .. } = self.profile {
+            if quadratic == 0.0 {
+                return 0.0;
+            }
+            return -self.profile.linear(origin, dir) / quadratic;
+        }
+        let to_middle = origin - DVec3::new(0.0, 0.0, self.middle);
+        -to_middle.dot(dir) / dir.length_squared()
+    }
+
+    /// Whether to move on to the vertex. For balls and cylinders that is the closest
+    /// approach once more.
+    fn is_near(&self, to_vertex: f64, dir: DVec3) -> bool {
+        match self.profile {
+            Profile::Ball { .. } | Profile::Cylinder { .. } => to_vertex.is_finite(),
+            Profile::Cone { .. }
+            | Profile::Paraboloid { .. }
+            | Profile::OneSheet { .. }
+            | Profile::TwoSheets { .. } => {
+                to_vertex.abs() * dir.length() <= NEAR * self.reach
+            }
+        }
+    }
+}
+
+/// The vertex counts as near within this many times the reach of the solid. With a root
+/// in reach and the vertex farther away than `NEAR` reaches, the other root is at least
+/// 2 `NEAR` − 1 reaches away, so the discriminant keeps more than half of B².
+const NEAR: f64 = 4.0;
+
+/// # What tells whether two walls are one
+impl Wall {
+    /// A point that walls on one quadric have in common: the centre, vertex or apex, or
+    /// for cylinders the point of the axis closest to a given one.
+    pub(crate) fn landmark(&self, near: DVec3) -> DVec3 {
+        let world_from_local = self.to_local.linear.inverse();
+        let at =
+            |z: f64| self.to_local.origin + world_from_local * DVec3::new(0.0, 0.0, z);
+        match self.profile {
+            Profile::Cylinder { .. } => {
+                let axis = world_from_local.z_axis;
+                let origin = self.to_local.origin;
+                origin - axis * ((origin - near).dot(axis) / axis.length_squared())
+            }
+            Profile::Cone { radius, slope } => at(-radius / slope),
+            Profile::Ball { .. }
+            | Profile::Paraboloid { .. }
+            | Profile::OneSheet { .. }
+            | Profile::TwoSheets { .. } => at(0.0),
+        }
+    }
+
+    /// How much farther than the wall itself the landmark can be moved by what moves the
+    /// wall: the ratio of the lengths along and across the axis.
+    pub(crate) fn slenderness(&self) -> f64 {
+        let [bottom, top] = self.ends;
+        let radius = self.profile.largest_radius(bottom, top);
+        let far = match self.profile {
+            Profile::Cone { radius, slope } => (radius / slope).abs() + (top - bottom),
+            Profile::Ball { .. }
+            | Profile::Cylinder { .. }
+            | Profile::Paraboloid { .. }
+            | Profile::OneSheet { .. }
+            | Profile::TwoSheets { .. } => top - bottom,
+        };
+        let m = self.to_local.linear;
+        let stretch = |v: DVec3| 1.0 / v.length();
+        let condition = m.col(0).length().max(m.col(1).length()).max(m.col(2).length())
+            * stretch(m.col(0)).max(stretch(m.col(1))).max(stretch(m.col(2)));
+        condition * (1.0 + (far / radius).powi(2))
+    }
+
+    /// At most how far from another wall this one is anywhere between its ends, to first
+    /// order.
+    ///
+    /// Both equations are written in coordinates in which this wall is about 1 wide and 1
+    /// high; where their coefficients differ by δ the walls are about δ/2 apart.
+    pub(crate) fn distance(&self, other: &Self) -> f64 {
+        let [bottom, top] = self.ends;
+        let radius = self.profile.largest_radius(bottom, top);
+        let scale = DVec3::new(radius, radius, 0.5 * (top - bottom));
+        let back = self.to_local.linear.inverse();
+        let origin = self.to_local.origin + back * DVec3::new(0.0, 0.0, self.middle);
+        let map = back * DMat3::from_diagonal(scale);
+        let (ours, theirs) = (self.form(origin, map), other.form(origin, map));
+        let ratio = (theirs[0] + theirs[1]) / (ours[0] + ours[1]);
+        // Walls with the same equation turned round are no walls of one solid.
+        if ratio.is_nan() || ratio <= 0.0 {
+            return f64::INFINITY;
+        }
+        let apart: f64 =
+            ours.iter().zip(theirs).map(|(a, b)| (b / ratio - a).abs()).sum();
+        let size = (ours[0] + ours[1]).abs();
+        let narrowest = map.col(0).length().min(map.col(1).length());
+        let along = map.col(2).length();
+        apart / size * narrowest.max(f64::MIN_POSITIVE) * (1.0 + narrowest / along)
+    }
+
+    /// The ten coefficients of the equation at `origin + map · s`: of s₀², s₁², s₂², s₀s₁,
+    /// s₁s₂, s₂s₀, s₀, s₁, s₂ and 1.
+    fn form(&self, origin: DVec3, map: DMat3) -> [f64; 10] {
+        let [a, b, _] = self.profile.coefficients();
+        let (p, m) = (self.to_local.point(origin), self.to_local.linear * map);
+        let weigh = |v: DVec3| DVec3::new(v.x, v.y, -a * v.z);
+        let product = |i: usize, j: usize| weigh(m.col(i)).dot(m.col(j));
+        let gradient = weigh(p) - DVec3::new(0.0, 0.0, b);
+        let slope = |i: usize| 2.0 * gradient.dot(m.col(i));
+        [
+            product(0, 0),
+            product(1, 1),
+            product(2, 2),
+            2.0 * product(0, 1),
+            2.0 * product(1, 2),
+            2.0 * product(2, 0),
+            slope(0),
+            slope(1),
+            slope(2),
+            self.profile.value(p),
+        ]
+    }
+
+    /// The numbers that describe it, ends apart.
+    pub(crate) fn numbers(&self) -> [f64; 15] {
+        let mut numbers = [0.0; 15];
+        numbers[..9].copy_from_slice(&self.to_local.linear.to_cols_array());
+        numbers[9..12].copy_from_slice(&self.to_local.origin.to_array());
+        numbers[12..].copy_from_slice(&self.profile.coefficients());
+        numbers
+    }
+
+    /// This wall, long enough for another one on the same quadric too.
+    pub(crate) fn extended_by(&self, other: &Self) -> Self {
+        if let Profile::Ball { .. } = self.profile {
+            return *self;
+        }
+        let back = other.to_local.linear.inverse();
+        let here = |z: f64| {
+            self.to_local.point(other.to_local.origin + back * DVec3::new(0.0, 0.0, z)).z
+        };
+        let same_frame = self.to_local == other.to_local;
+        let [a, b] = if same_frame { other.ends } else { other.ends.map(here) };
+        let [bottom, top] = self.ends;
+        let ends = [bottom.min(a).min(b), top.max(a).max(b)];
+        Self::new(self.profile, self.to_local, ends)
+    }
+}
+
+impl Profile {
+    /// The heights between which there is anything, within two given ones.
+    pub(super) fn extent(&self, bottom: f64, top: f64) -> (f64, f64) {
+        match *self {
+            Self::Ball { radius } => (bottom.max(-radius), top.min(radius)),
+            Self::Paraboloid { .. } => (bottom.max(0.0), top),
+            Self::TwoSheets { vertex, .. } => (
+                if bottom > -vertex { bottom.max(vertex) } else { bottom },
+                if top < vertex { top.min(-vertex) } else { top },
+            ),
+            Self::Cylinder { .. } | Self::Cone { .. } | Self::OneSheet { .. } => {
+                (bottom, top)
+            }
+        }
+    }
+
+    /// The radius at a height; zero where there is nothing.
+    pub(super) fn radius(&self, z: f64) -> f64 {
+        match *self {
+            Self::Cylinder { radius } => radius,
+            Self::Cone { radius, slope } => (radius + slope * z).max(0.0),
+            Self::Ball { .. }
+            | Self::Paraboloid { .. }
+            | Self::OneSheet { .. }
+            | Self::TwoSheets { .. } => {
+                let [a, b, c] = self.coefficients();
+                (z * (a * z + 2.0 * b) + c).max(0.0).sqrt()
+            }
+        }
+    }
+
+    /// The largest radius between two heights: at an end, or at the equator of a ball.
+    pub(super) fn largest_radius(&self, bottom: f64, top: f64) -> f64 {
+        match *self {
+            Self::Ball { radius } if bottom <= 0.0 && top >= 0.0 => radius,
+            Self::Ball { .. }
+            | Self::Cylinder { .. }
+            | Self::Cone { .. }
+            | Self::Paraboloid { .. }
+            | Self::OneSheet { .. }
+            | Self::TwoSheets { .. } => self.radius(bottom).max(self.radius(top)),
+        }
+    }
+
+    /// `x² + y² − ρ(z)` at a point, as a product where it is a difference of squares.
+    fn value(&self, p: DVec3) -> f64 {
+        let across = p.truncate().length();
+        match *self {
+            Self::Ball { radius } => difference_of_squares(p.length(), radius),
+            Self::Cylinder { radius } => difference_of_squares(across, radius),
+            Self::Cone { radius, slope } => {
+                difference_of_squares(across, radius + slope * p.z)
+            }
+            Self::Paraboloid { scale } => across * across - scale * p.z,
+            Self::OneSheet { waist, slope } => {
+                difference_of_squares(across, waist.hypot(slope * p.z))
+            }
+            Self::TwoSheets { vertex, slope } => {
+                difference_of_squares(across.hypot(slope * vertex), slope * p.z)
+            }
+        }
+    }
+
+    /// Half the gradient of [`Profile::value`].
+    fn half_gradient(&self, p: DVec3) -> DVec3 {
+        let z = match *self {
+            Self::Ball { .. } => p.z,
+            Self::Cylinder { .. } => 0.0,
+            Self::Cone { radius, slope } => -slope * (radius + slope * p.z),
+            Self::Paraboloid { scale } => -0.5 * scale,
+            Self::OneSheet { slope, .. } | Self::TwoSheets { slope, .. } => {
+                -slope * slope * p.z
+            }
+        };
+        DVec3::new(p.x, p.y, z)
+    }
+
+    /// A: the quadratic coefficient along a direction.
+    fn quadratic(&self, d: DVec3) -> f64 {
+        match *self {
+            Self::Ball { .. } => d.length_squared(),
+            Self::Cylinder { .. } | Self::Paraboloid { .. } => {
+                d.truncate().length_squared()
+            }
+            Self::Cone { slope, .. }
+            | Self::OneSheet { slope, .. }
+            | Self::TwoSheets { slope, .. } => {
+                difference_of_squares(d.truncate().length(), slope * d.z)
+            }
+        }
+    }
+
+    /// B: half the derivative of the value along a direction.
+    fn linear(&self, p: DVec3, d: DVec3) -> f64 {
+        self.half_gradient(p).dot(d)
+    }
+}
+
+/// `a² − b²` with a relative error of a few units for exact operands.
+fn difference_of_squares(a: f64, b: f64) -> f64 {
+    (a - b) * (a + b)
+}
