@@ -57,6 +57,7 @@
 //! library alone take `default-features = false`.
 
 mod aabb;
+mod angle;
 mod bvh;
 mod census;
 mod color;

@@ -230,3 +230,10 @@ fn errors_name_the_leaf() {
         .join("\n")
     );
 }
+
+#[test]
+fn sizes_whose_squares_are_no_numbers_are_refused() {
+    for radius in [1e160, 1e-160] {
+        assert!(solidray::Scene::compile(&Solid::ball(radius)).is_err(), "{radius}");
+    }
+}

@@ -238,6 +238,29 @@ fn volume_without_a_solid_is_not_resolved() {
 }
 
 #[test]
+fn solids_that_only_touch_have_no_volume_in_common() {
+    let desk = Desk::new();
+    let cube = "cube(size = [1, 1, 1], center = false);";
+    let moved = "multmatrix([[1, 0, 0, 1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])";
+    desk.put("touch.csg", &format!("intersection() {{ {cube} {moved} {{ {cube} }} }}"));
+    assert_eq!(desk.run(&["volume", "touch.csg"]).out, "0\n");
+    desk.put("empty.csg", "group();\n");
+    let done = desk.run(&["compare", "ball.csg", "empty.csg"]);
+    assert_eq!(done.code, 1, "{}", done.err);
+    assert!(done.out.contains("\nB      0\n"), "{}", done.out);
+}
+
+#[test]
+fn standard_input_is_the_model_or_the_list() {
+    let desk = Desk::new();
+    for command in ["contains", "ray"] {
+        let done = desk.run_with_input(&[command, "-", "--format", "csg"], BALL);
+        assert_eq!(done.code, 2, "{}", done.out);
+        assert!(done.err.contains("cannot be both"), "{}", done.err);
+    }
+}
+
+#[test]
 fn compare_tells_same_from_different() {
     let desk = Desk::new();
     desk.put("larger.csg", "sphere($fn = 0, $fa = 12, $fs = 2, r = 3.3);\n");

@@ -239,3 +239,23 @@ fn copies_by_differently_written_maps_leave_nothing() {
         }
     }
 }
+
+/// Products of four such coordinates are no numbers.
+#[test]
+fn meshes_may_be_as_large_or_small_as_numbers_go() {
+    for size in [1e-300, 1e-160, 1e-110, 1e110, 1e160, 1e300] {
+        let mesh = meshes::mapped(
+            &meshes::icosphere(1),
+            &DAffine3::from_scale(DVec3::splat(size)),
+        );
+        let scene = scene(&Solid::mesh(mesh));
+        let mut dice = Dice::new(12);
+        for _ in 0..200 {
+            let (inside, outside) = (0.9 * dice.point(0.5), 1.1 * dice.direction());
+            assert!(scene.contains(size * inside), "{size}: {inside}");
+            assert!(!scene.contains(size * outside), "{size}: {outside}");
+            let ray = Ray::new(size * inside, dice.direction());
+            assert_eq!(ends_in(&scene, &ray).len(), 1, "{size}: {inside}");
+        }
+    }
+}

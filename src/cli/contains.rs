@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use anyhow::bail;
 use clap::Args;
 use glam::DVec3;
 use serde::Serialize;
@@ -38,6 +39,9 @@ impl Contains {
         global: Global,
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
+        if self.points.is_empty() && self.file.as_os_str() == "-" {
+            bail!("standard input cannot be both the model and the list");
+        }
         let scene = self.reading.load(&self.file, global)?.scene;
         let mut tracer = scene.tracer();
         let (mut answer, mut separator) = (Answer::Yes, "");

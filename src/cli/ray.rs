@@ -69,6 +69,9 @@ impl Rays {
         global: Global,
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
+        if self.origin.is_none() && self.file.as_os_str() == "-" {
+            bail!("standard input cannot be both the model and the list");
+        }
         let scene = self.reading.load(&self.file, global)?.scene;
         let mut tracer = scene.tracer();
         let mut each = |ray: Ray| -> anyhow::Result<()> {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::estimate::{Estimate, Method};
 use super::lattice::{Beam, Round, Sampling, Tally, rounds, student};
-use super::volume::{Chords, estimate};
+use super::volume::{Chords, estimate, is_nothing};
 use crate::progress::Progress;
 use crate::ray::{Ray, Span};
 use crate::scene::{CompileError, Scene, Tracer};
@@ -95,12 +95,13 @@ pub fn compare(
         Scene::compile(&(b.clone() - a.clone()))?,
     ];
     let bounds = scenes[0].bounds().hull(scenes[1].bounds());
-    if bounds.is_empty() {
+    let nothing = scenes.each_ref().map(is_nothing);
+    if nothing[0] && nothing[1] {
         return Ok(both_empty());
     }
     let beam = Beam::new(bounds);
     let comparison = |round: &Round<Tallies>, rays| {
-        summary(&beam, round, rays, tolerance, sampling.rel_tol)
+        summary(&beam, round, rays, nothing, tolerance, sampling.rel_tol)
     };
     let (round, rays) = rounds(
         &beam,
@@ -164,11 +165,17 @@ fn summary(
     beam: &Beam,
     round: &Round<Tallies>,
     rays: u64,
+    nothing: [bool; 4],
     tolerance: f64,
     rel_tol: f64,
 ) -> Comparison {
-    let [a, b, a_minus_b, b_minus_a] =
-        std::array::from_fn(|i| estimate(beam, round, rays, rel_tol, |t| t.chords[i]));
+    let [a, b, a_minus_b, b_minus_a] = std::array::from_fn(|i| {
+        if nothing[i] {
+            Estimate::exact(0.0)
+        } else {
+            estimate(beam, round, rays, rel_tol, |t| t.chords[i])
+        }
+    });
     let difference = estimate(beam, round, rays, rel_tol, |t| t.difference);
     let allowed = tolerance * a.value.max(b.value);
     let verdict = if difference.interval[1] <= allowed {

@@ -31,8 +31,8 @@ impl Chords {
     }
 }
 
-/// The volume, in cubic model units, by lattices of rays parallel to the longest edge of
-/// the bounds.
+/// The volume, in cubic model units, by lattices of rays all but parallel to the longest
+/// edge of the bounds.
 ///
 /// Where fewer than ten rays of some lattice meet the solid the answer is *not resolved*:
 /// an upper bound instead of a spread that would be too small, or zero.
@@ -55,11 +55,10 @@ pub fn volume_with(
     sampling: &Sampling,
     progress: Progress<'_>,
 ) -> Estimate {
-    let bounds = scene.bounds();
-    if bounds.is_empty() {
+    if is_nothing(scene) {
         return Estimate::exact(0.0);
     }
-    let beam = Beam::new(bounds);
+    let beam = Beam::new(scene.bounds());
     let (round, rays) = rounds(
         &beam,
         sampling,
@@ -71,6 +70,11 @@ pub fn volume_with(
         |round, rays| estimate(&beam, round, rays, sampling.rel_tol, |c| *c).target_met,
     );
     estimate(&beam, &round, rays, sampling.rel_tol, |chords| *chords)
+}
+
+/// Whether the bounds alone say that there is no volume.
+pub(super) fn is_nothing(scene: &Scene) -> bool {
+    scene.bounds().size().min_element() == 0.0
 }
 
 /// The volume that goes with some of a round's chords.

@@ -8,6 +8,8 @@ mod error;
 mod fill;
 mod polygon;
 
+use std::fmt;
+
 use glam::DVec3;
 
 use crate::aabb::Aabb;
@@ -19,7 +21,7 @@ pub use error::{MeshError, OpenEdge};
 /// so every line goes in as often as it comes out, however the mesh touches or passes
 /// through itself. Faces are counter-clockwise seen from outside; inside is where the
 /// winding number is positive.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Mesh {
     points: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
@@ -76,5 +78,12 @@ impl Mesh {
             })
             .sum();
         sixth / 6.0
+    }
+}
+
+/// Says how large the mesh is; it can be too large to print.
+impl fmt::Debug for Mesh {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Mesh({} points, {} faces)", self.points.len(), self.faces.len())
     }
 }

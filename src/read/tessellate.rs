@@ -1,9 +1,10 @@
 //! Circles, cylinders and spheres with the vertices of OpenSCAD 2021.01.
 
-use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+use std::f64::consts::TAU;
 
 use glam::DVec3;
 
+use crate::angle::{cos_deg, sin_deg};
 use crate::mesh::{Mesh, MeshError};
 
 /// OpenSCAD's `$fn`, `$fa` and `$fs`, which say how fine a curve is cut.
@@ -146,35 +147,5 @@ fn band(faces: &mut Vec<[u32; 3]>, low: &[u32], high: &[u32]) {
         if high.len() > 1 {
             faces.push([at(low, i), at(high, j), at(high, i)]);
         }
-    }
-}
-
-/// The cosine of an angle of 0 to 360 degrees, exact where a square root or less tells it.
-fn cos_deg(degrees: f64) -> f64 {
-    sin_deg(if degrees < 270.0 { degrees + 90.0 } else { degrees - 270.0 })
-}
-
-/// The sine of an angle of 0 to 360 degrees, exact where a square root or less tells it:
-/// corners of squares, hexagons and octagons then lie in common planes.
-fn sin_deg(degrees: f64) -> f64 {
-    if degrees >= 180.0 {
-        return -sin_deg_half(degrees - 180.0);
-    }
-    sin_deg_half(degrees)
-}
-
-#[expect(clippy::float_cmp, reason = "exact angles have exact values")]
-fn sin_deg_half(degrees: f64) -> f64 {
-    let x = if degrees > 90.0 { 180.0 - degrees } else { degrees };
-    if x == 30.0 {
-        0.5
-    } else if x == 45.0 {
-        FRAC_1_SQRT_2
-    } else if x == 60.0 {
-        0.75_f64.sqrt()
-    } else if x > 45.0 {
-        (90.0 - x).to_radians().cos()
-    } else {
-        x.to_radians().sin()
     }
 }

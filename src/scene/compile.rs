@@ -22,7 +22,7 @@ use crate::solid::{Kind, Place, Solid, Tag};
 #[non_exhaustive]
 pub enum CompileError {
     /// A size is out of its range.
-    #[error("{leaf}: the {parameter} is {value}")]
+    #[error("{leaf}: the {parameter} is {value}, which is out of its range")]
     BadParameter {
         /// Which leaf.
         leaf: LeafName,

@@ -19,6 +19,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
 
+use super::line::inverse_power_of_two;
 use super::place::{Frame, ToLocal};
 use super::{Line, Sink, Surface};
 use crate::aabb::Aabb;
@@ -31,13 +32,19 @@ use crate::ray::Sense;
 pub(crate) struct IndexedMesh {
     mesh: Arc<Mesh>,
     faces: Bvh,
+    /// The power of two that brings the coordinates to about 1, so that products of them
+    /// are neither too large nor too small to be exact.
+    scale: f64,
 }
 
 impl IndexedMesh {
     pub(crate) fn new(mesh: Arc<Mesh>) -> Self {
         let boxes: Vec<Aabb> =
             (0..mesh.faces().len()).map(|i| Aabb::around(mesh.corners(i))).collect();
-        Self { faces: Bvh::new(&boxes), mesh }
+        let faces = Bvh::new(&boxes);
+        let bounds = faces.bounds();
+        let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+        Self { mesh, faces, scale: inverse_power_of_two(largest) }
     }
 }
 
@@ -65,11 +72,11 @@ impl Surface for Polyhedron {
     fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
         let origin = self.to_local.point(line.origin);
         let dir = self.to_local.direction(line.dir);
-        let IndexedMesh { mesh, faces } = &*self.mesh;
+        let IndexedMesh { mesh, faces, scale } = &*self.mesh;
         let moves = DVec3::AXES.map(|axis| self.to_local.direction(axis));
-        let shear = Shear::new(origin, dir, moves);
+        let shear = Shear::new(*scale * origin, *scale * dir, moves);
         faces.crossed(&Slabs::new(origin, dir, &faces.bounds()), |face| {
-            let corners = mesh.corners(face as usize).map(|p| shear.map(p));
+            let corners = mesh.corners(face as usize).map(|p| shear.map(*scale * p));
             if let Some((t, sense)) = crossing(corners, &shear) {
                 sink.crossing(t, face, sense);
             }

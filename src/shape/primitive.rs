@@ -115,7 +115,7 @@ impl Primitive {
             Self::Quadric { profile, bottom, top } => {
                 finite("bottom", bottom)?;
                 finite("top", top)?;
-                positive("height", top - bottom)?;
+                size("height", top - bottom)?;
                 profile.check(bottom, top)
             }
         }
@@ -153,24 +153,22 @@ impl Profile {
 
     fn check(&self, bottom: f64, top: f64) -> Result<(), BadParameter> {
         match *self {
-            Self::Ball { radius } | Self::Cylinder { radius } => {
-                positive("radius", radius)
-            }
+            Self::Ball { radius } | Self::Cylinder { radius } => size("radius", radius),
             Self::Cone { radius, slope } => {
                 finite("slope", slope)?;
                 let (a, b) = (radius + slope * bottom, radius + slope * top);
                 not_negative("bottom radius", a)?;
                 not_negative("top radius", b)?;
-                positive("larger radius", a.max(b))
+                size("larger radius", a.max(b))
             }
-            Self::Paraboloid { scale } => positive("scale", scale),
+            Self::Paraboloid { scale } => size("scale", scale),
             Self::OneSheet { waist, slope } => {
-                positive("waist", waist)?;
+                size("waist", waist)?;
                 not_negative("slope", slope)
             }
             Self::TwoSheets { vertex, slope } => {
-                positive("vertex", vertex)?;
-                positive("slope", slope)?;
+                size("vertex", vertex)?;
+                size("slope", slope)?;
                 positive("height beyond the vertex", top.abs().max(bottom.abs()) - vertex)
             }
         }
@@ -179,6 +177,15 @@ impl Profile {
 
 fn finite(parameter: &'static str, value: f64) -> Result<(), BadParameter> {
     if value.is_finite() { Ok(()) } else { Err(BadParameter { parameter, value }) }
+}
+
+/// The smallest and the largest size of a quadric: their squares, and products of a few
+/// such, are numbers still.
+const SIZES: std::ops::RangeInclusive<f64> = 1e-75..=1e75;
+
+/// A size of a quadric.
+fn size(parameter: &'static str, value: f64) -> Result<(), BadParameter> {
+    if SIZES.contains(&value) { Ok(()) } else { Err(BadParameter { parameter, value }) }
 }
 
 fn positive(parameter: &'static str, value: f64) -> Result<(), BadParameter> {
