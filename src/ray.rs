@@ -26,6 +26,13 @@ impl Ray {
         self.origin + t * self.dir
     }
 
+    /// The length of the direction: how far a step of `t` goes. Right for directions so long
+    /// or short that their squares are no numbers.
+    pub fn speed(&self) -> f64 {
+        let largest = self.dir.abs().max_element();
+        if largest > 0.0 { largest * (self.dir / largest).length() } else { 0.0 }
+    }
+
     /// Whether all components are finite and the direction is not zero. A ray that is
     /// not valid meets nothing.
     pub fn is_valid(&self) -> bool {

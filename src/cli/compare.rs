@@ -116,7 +116,7 @@ impl Compare {
         if let Some(worst) = &found.worst {
             writeln!(
                 out,
-                "longest disagreement  {} from {} to {}, only in {}",
+                "longest disagreement  {:.6} from {} to {}, only in {}",
                 worst.length,
                 point(worst.from),
                 point(worst.to),

@@ -15,7 +15,9 @@ use super::{Answer, Global};
 
 /// Say for points whether they are inside
 ///
-/// Prints `in` or `out` for each point. The exit code is 1 if any of them is out.
+/// Prints `in` or `out` for each point. The exit code is 1 if any of them is out. On standard
+/// input numbers are separated by commas or blanks; `#` begins a comment, and a first line of
+/// names is skipped.
 #[derive(Args, Debug)]
 pub(super) struct Contains {
     /// The model

@@ -107,6 +107,9 @@ impl Reading {
         let start = Instant::now();
         let scene = compile(file, &model.solid)?;
         let compile_seconds = start.elapsed().as_secs_f64();
+        if scene.bounds().is_empty() && !global.quiet {
+            report::note(&format!("warning: {}: the model is empty", file.display()));
+        }
         Ok(Loaded { scene, read_seconds, compile_seconds })
     }
 }
@@ -137,14 +140,21 @@ pub(super) fn compile(file: &Path, solid: &Solid) -> Result<Scene, CompileFault>
 }
 
 /// Calls `each` with the numbers on every line of standard input that has any; `#` begins a
-/// comment.
+/// comment, and a first line without any number is a heading.
 pub(super) fn lines_of_numbers<const N: usize>(
     mut each: impl FnMut([f64; N]) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
+    let mut is_first = true;
     for (i, line) in io::stdin().lock().lines().enumerate() {
         let line = line.context("standard input")?;
+        let line = line.trim_start_matches('\u{feff}');
         let line = line.split('#').next().unwrap_or_default().trim();
         if line.is_empty() {
+            continue;
+        }
+        let was_first = std::mem::replace(&mut is_first, false);
+        let has = |kind: fn(char) -> bool| line.chars().any(kind);
+        if was_first && has(char::is_alphabetic) && !has(char::is_numeric) {
             continue;
         }
         let Numbers(numbers) =

@@ -55,14 +55,20 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
     }
     let decimals = decimals(half_width);
     if decimals > 12 || estimate.value.abs() >= 1e15 {
-        return format!("{:e} ± {half_width:.1e} (95 %)", estimate.value);
+        let digits = (estimate.value.abs() / half_width).max(1.0).log10().floor() + 1.0;
+        let digits = decimals_of(digits);
+        return format!("{:.digits$e} ± {half_width:.1e} (95 %)", estimate.value);
     }
     format!("{:.decimals$} ± {half_width:.decimals$} (95 %)", estimate.value)
 }
 
 /// How many decimals show two digits of an error bar.
 fn decimals(half_width: f64) -> usize {
-    let digits = 1.0 - half_width.log10().floor();
+    decimals_of(1.0 - half_width.log10().floor())
+}
+
+/// A number of decimals that can be printed.
+fn decimals_of(digits: f64) -> usize {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -90,25 +96,37 @@ pub(super) fn point(p: DVec3) -> String {
     format!("{},{},{}", p.x, p.y, p.z)
 }
 
-/// Writes a file beside its place and moves it there when it is complete.
+/// Writes a file beside its place and moves it there when it is complete. What was there
+/// keeps its permissions, and a link stays a link.
 pub(super) fn save(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
-    let write = || -> std::io::Result<()> {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".solidray-").suffix(".part");
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    write_beside(&target, bytes)
+        // The name of the file beside it would be no help.
+        .map_err(|error| std::io::Error::from(error.kind()))
+        .with_context(|| path.display().to_string())
+}
+
+fn write_beside(target: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".solidray-").suffix(".part");
+    if let Ok(old) = std::fs::metadata(target) {
+        if old.permissions().readonly() {
+            return Err(std::io::ErrorKind::PermissionDenied.into());
+        }
+        builder.permissions(old.permissions());
+    } else {
         #[cfg(unix)]
         {
             // A file like any other that the user makes, not one only they may read.
             use std::os::unix::fs::PermissionsExt;
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
-        let mut file = builder.tempfile_in(folder)?;
-        file.write_all(bytes)?;
-        file.persist(path).map_err(|error| error.error)?;
-        Ok(())
-    };
-    write().with_context(|| path.display().to_string())
+    }
+    let mut file = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
+    file.write_all(bytes)?;
+    file.persist(target).map_err(|error| error.error)?;
+    Ok(())
 }
 
 #[cfg(test)]
@@ -129,5 +147,6 @@ mod tests {
         assert_eq!(in_words(&estimate(113.097_335, 0.0123)), "113.097 ± 0.012 (95 %)");
         assert_eq!(in_words(&estimate(113_097.335, 12.3)), "113097 ± 12 (95 %)");
         assert_eq!(in_words(&estimate(8.0, 0.0)), "8");
+        assert_eq!(in_words(&estimate(8.627e-14, 2.4e-15)), "8.63e-14 ± 2.4e-15 (95 %)");
     }
 }

@@ -96,7 +96,7 @@ impl Rays {
 }
 
 fn chord(ray: &Ray, span: &Span) -> f64 {
-    span.length() * ray.dir.length()
+    span.length() * ray.speed()
 }
 
 /// Added to zero: the sum of nothing would be −0.

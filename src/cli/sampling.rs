@@ -11,7 +11,7 @@ pub(super) struct SamplingArgs {
     /// Go on until the half width of the 95 % interval is this fraction of the value
     #[arg(long, value_name = "T", default_value = "1e-4", value_parser = positive, help_heading = "Sampling")]
     rel_tol: f64,
-    /// Stop at this many rays though the tolerance is not met
+    /// Stop at this many rays though the tolerance is not met; the first round takes 3728
     #[arg(long, value_name = "N", default_value_t = Sampling::default().max_rays, value_parser = clap::value_parser!(u64).range(1..), help_heading = "Sampling")]
     max_rays: u64,
     /// Stop before this many seconds though the tolerance is not met

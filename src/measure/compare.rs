@@ -142,7 +142,7 @@ fn sample(tracers: &mut [Tracer<'_>; 4], ray: &Ray, tallies: &mut Tallies) {
             only_one += length;
             let longest = spans.iter().max_by(|s, t| s.length().total_cmp(&t.length()));
             let found = longest.map(|span| Worst {
-                length: span.length() * ray.dir.length(),
+                length: span.length() * ray.speed(),
                 from: ray.at(span.enter.t),
                 to: ray.at(span.exit.t),
                 in_a: i == 2,

@@ -35,7 +35,8 @@ impl Chords {
 /// edge of the bounds.
 ///
 /// Where fewer than ten rays of some lattice meet the solid the answer is *not resolved*:
-/// an upper bound instead of a spread that would be too small, or zero.
+/// an upper bound instead of a spread that would be too small, or zero. Where no ray does, a
+/// sixteenth of `max_rays` is enough to say so.
 ///
 /// ```
 /// use solidray::{Scene, Solid, measure};
@@ -67,10 +68,18 @@ pub fn volume_with(
         |tracer, ray, chords: &mut Chords| {
             chords.add_ray(tracer.spans(ray).iter().map(|span| span.length()).sum());
         },
-        |round, rays| estimate(&beam, round, rays, sampling.rel_tol, |c| *c).target_met,
+        |round, rays| {
+            let hopeless = rays >= sampling.max_rays / PATIENCE
+                && round.replicates.iter().all(|chords| chords.hits == 0);
+            hopeless || estimate(&beam, round, rays, sampling.rel_tol, |c| *c).target_met
+        },
     );
     estimate(&beam, &round, rays, sampling.rel_tol, |chords| *chords)
 }
+
+/// When no ray has met the solid after this part of the allowed rays, it is given up: the
+/// bound would only become a little smaller.
+const PATIENCE: u64 = 16;
 
 /// Whether the bounds alone say that there is no volume.
 pub(super) fn is_nothing(scene: &Scene) -> bool {
