@@ -4,8 +4,11 @@
 //! wrong with it into a [`ReadError`] that names file, line and column. No bytes make a
 //! reader panic or use the stack in proportion to the input.
 //!
-//! To add a format: its reader in a file here, a variant and its endings in
-//! [`Format`], an arm in [`bytes()`].
+//! To add a format: its reader in a file here; a variant and its endings in [`Format`];
+//! arms in [`file()`], [`bytes()`] and, for a mesh, `mesh()`; the list of known endings in
+//! [`ReadErrorKind::UnknownFormat`]; a value of `--format`, and the help, in
+//! `cli/input.rs`; and what models may import, in `openscad/import.rs`. The compiler only
+//! asks for the arms.
 
 mod error;
 mod faces;
