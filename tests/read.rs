@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
 use proptest::prelude::*;
 use solidray::read::{
     self, Curves, Format, Model, ReadError, ReadErrorKind, ReadOptions,
 };
+use solidray::{Mesh, View};
 
 fn bytes(text: impl AsRef<[u8]>, format: Format) -> Result<Model, ReadError> {
     read::bytes(text.as_ref(), Path::new("part.x"), format, &ReadOptions::default())
@@ -22,6 +24,27 @@ fn refused(text: impl AsRef<[u8]>, format: Format) -> String {
 /// A Debug text says what the topmost node is.
 fn is_empty(model: &Model) -> bool {
     format!("{:?}", model.solid) == "Solid(Boolean(Union), 0 children)"
+}
+
+/// The mesh that is all of a model, under names and places alone.
+fn mesh(model: &Model) -> &Mesh {
+    let mut solid = &model.solid;
+    loop {
+        match solid.view() {
+            View::Mesh(mesh) => return mesh,
+            View::Tagged(child) => solid = child,
+            _ => panic!("no mesh: {solid:?}"),
+        }
+    }
+}
+
+/// That a model is the tetrahedron between the origin and 6 on each axis.
+#[track_caller]
+fn assert_tetrahedron(model: &Model) {
+    let mesh = mesh(model);
+    assert_eq!(mesh.volume(), 36.0);
+    let bounds = mesh.bounds();
+    assert_eq!((bounds.min, bounds.max), (DVec3::ZERO, DVec3::splat(6.0)));
 }
 
 #[test]
@@ -192,11 +215,12 @@ fn mesh_formats_are_read() {
     for (text, format) in [(obj.as_str(), Format::Obj), (off, Format::Off)] {
         let model = bytes(text, format).unwrap();
         assert_eq!(model.counts.turned, 0);
-        assert!(!is_empty(&model));
+        assert_tetrahedron(&model);
     }
     let inside_out = format!("{TETRAHEDRON}f 1 2 3\nf 4 2 1\nf 4 3 2\nf 3 4 1\n");
     let turned = bytes(inside_out, Format::Obj).unwrap();
     assert_eq!(turned.counts.turned, 1);
+    assert_tetrahedron(&turned);
     assert_eq!(turned.warnings[0].message, "the mesh was inside out and has been turned");
 }
 
@@ -232,7 +256,7 @@ fn stl_is_read_as_text_and_binary() {
     }
     text += "endsolid a b\n";
     for file in [text.clone().into_bytes(), binary_stl(b"x"), binary_stl(b"solid x")] {
-        assert!(!is_empty(&bytes(file, Format::Stl).unwrap()));
+        assert_tetrahedron(&bytes(file, Format::Stl).unwrap());
     }
     let mut short = binary_stl(b"");
     short[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
