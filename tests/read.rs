@@ -276,6 +276,82 @@ fn stl_is_read_as_text_and_binary() {
     assert_eq!(refused("solid\nendsolid", Format::Stl), "part.x: the mesh has no faces");
 }
 
+/// Two tetrahedra of volumes 36 and 4/3 apart from each other, wound as is asked.
+fn two_tetrahedra(turned: [bool; 2]) -> Model {
+    let mut text =
+        format!("{TETRAHEDRON}v 10 10 10\nv 12 10 10\nv 10 12 10\nv 10 10 12\n");
+    for (first, turned) in [1, 5].into_iter().zip(turned) {
+        for mut face in [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]] {
+            if turned {
+                face.reverse();
+            }
+            let [a, b, c] = face.map(|i| i + first);
+            text += &format!("f {a} {b} {c}\n");
+        }
+    }
+    bytes(text, Format::Obj).unwrap()
+}
+
+#[test]
+fn each_body_that_is_inside_out_is_turned() {
+    for turned in [[false, false], [false, true], [true, false], [true, true]] {
+        let model = two_tetrahedra(turned);
+        let volume = mesh(&model).volume();
+        assert!((volume - (36.0 + 4.0 / 3.0)).abs() < 1e-12, "{turned:?}: {volume}");
+        let any = usize::from(turned.contains(&true));
+        assert_eq!((model.counts.turned, model.warnings.len()), (any, any));
+    }
+    let model = csg("polyhedron(points=[[0,0,0],[6,0,0],[0,6,0],[0,0,6],[10,10,10],\
+         [12,10,10],[10,12,10],[10,10,12]],faces=[[0,1,2],[0,3,1],[1,3,2],[0,2,3],\
+         [6,5,4],[5,7,4],[6,7,5],[7,6,4]]);");
+    assert!((mesh(&model).volume() - (36.0 + 4.0 / 3.0)).abs() < 1e-12);
+    assert_eq!(model.counts.turned, 1);
+}
+
+/// Cubes around one point, each within the one before, wound as the sizes' signs say.
+fn nested(sizes: &[i32]) -> Model {
+    let (mut text, mut first) = (String::new(), 1);
+    for size in sizes {
+        let half = size.abs();
+        for i in 0..8 {
+            let side = |bit: i32| if i & bit == 0 { -half } else { half };
+            text += &format!("v {} {} {}\n", side(1), side(2), side(4));
+        }
+        for mut face in [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ] {
+            if *size < 0 {
+                face.reverse();
+            }
+            let [a, b, c, d] = face.map(|i| i + first);
+            text += &format!("f {a} {b} {c} {d}\n");
+        }
+        first += 8;
+    }
+    bytes(text, Format::Obj).unwrap()
+}
+
+#[test]
+fn cavities_stay() {
+    for (sizes, volume, turned) in [
+        (&[5, -4][..], 1000 - 512, 0),
+        (&[-5, 4], 1000 - 512, 1),
+        (&[5, -4, 3], 1000 - 512 + 216, 0),
+        (&[5, -4, -3], 1000 - 512 + 216, 1),
+        (&[5, -4, 3, -2], 1000 - 512 + 216 - 64, 0),
+        (&[5, 4], 1000 + 512, 0),
+    ] {
+        let model = nested(sizes);
+        assert_eq!(mesh(&model).volume(), f64::from(volume), "{sizes:?}");
+        assert_eq!(model.counts.turned, turned, "{sizes:?}");
+    }
+}
+
 #[test]
 fn refused_meshes_are_located() {
     for (text, format, expected) in [

@@ -32,17 +32,7 @@ impl Mesh {
         points: Vec<DVec3>,
         faces: &[F],
     ) -> Result<Self, MeshError> {
-        let mut triangles = Vec::with_capacity(faces.len());
-        for (face, corners) in faces.iter().map(AsRef::as_ref).enumerate() {
-            if let Some(&index) = corners.iter().find(|&&i| i as usize >= points.len()) {
-                let (index, count) = (u64::from(index), points.len());
-                return Err(MeshError::NoSuchPoint { face, index, count });
-            }
-            if corners.len() < 3 {
-                return Err(MeshError::TooFewCorners { face, corners: corners.len() });
-            }
-            triangles.extend(polygon::triangles(&points, corners));
-        }
+        let triangles = triangulated(&points, faces)?;
         Self::new(points, triangles)
     }
 
@@ -79,4 +69,23 @@ impl Mesh {
         }
         Self::new(points, faces)
     }
+}
+
+/// The triangles of faces with three or more corners.
+pub(crate) fn triangulated<F: AsRef<[u32]>>(
+    points: &[DVec3],
+    faces: &[F],
+) -> Result<Vec<[u32; 3]>, MeshError> {
+    let mut triangles = Vec::with_capacity(faces.len());
+    for (face, corners) in faces.iter().map(AsRef::as_ref).enumerate() {
+        if let Some(&index) = corners.iter().find(|&&i| i as usize >= points.len()) {
+            let (index, count) = (u64::from(index), points.len());
+            return Err(MeshError::NoSuchPoint { face, index, count });
+        }
+        if corners.len() < 3 {
+            return Err(MeshError::TooFewCorners { face, corners: corners.len() });
+        }
+        triangles.extend(polygon::triangles(points, corners));
+    }
+    Ok(triangles)
 }

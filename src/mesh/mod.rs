@@ -13,6 +13,7 @@ use std::fmt;
 use glam::DVec3;
 
 use crate::aabb::Aabb;
+pub(crate) use build::triangulated;
 pub use error::{MeshError, OpenEdge};
 
 /// A closed, oriented triangle mesh.
@@ -37,11 +38,15 @@ impl Mesh {
     ///
     /// The first fault found, in the order in which [`MeshError`] lists them.
     pub fn new(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, MeshError> {
-        check::indices(&points, &faces)?;
-        check::closed(&points, &faces)?;
-        let mesh = Self { points, faces };
+        check_closed(&points, &faces)?;
+        let mesh = Self::from_closed(points, faces);
         let volume = mesh.volume();
         if volume < 0.0 { Err(MeshError::InsideOut { volume }) } else { Ok(mesh) }
+    }
+
+    /// A mesh of what [`check_closed`] has passed and is not inside out.
+    pub(crate) fn from_closed(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Self {
+        Self { points, faces }
     }
 
     /// The points.
@@ -86,4 +91,17 @@ impl fmt::Debug for Mesh {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Mesh({} points, {} faces)", self.points.len(), self.faces.len())
     }
+}
+
+/// Whether faces are closed and oriented, one way or the other.
+///
+/// # Errors
+///
+/// The first fault found.
+pub(crate) fn check_closed(
+    points: &[DVec3],
+    faces: &[[u32; 3]],
+) -> Result<(), MeshError> {
+    check::indices(points, faces)?;
+    check::closed(points, faces)
 }

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::error::{Located, ReadErrorKind};
-use crate::mesh::{Mesh, MeshError};
+use super::turn::turn;
+use crate::mesh::{self, Mesh, MeshError};
 
 /// What a warning about a turned mesh says.
 pub(super) const TURNED: &str = "the mesh was inside out and has been turned";
@@ -21,32 +22,32 @@ pub(super) struct Faces {
 #[derive(Debug)]
 pub(super) struct Built {
     pub(super) mesh: Mesh,
-    /// Whether all faces had to be reversed.
+    /// Whether some or all faces had to be reversed.
     pub(super) turned: bool,
 }
 
 impl Faces {
     /// The mesh, put right where what is meant is plain: points listed several times are
-    /// welded if the mesh is open without, and an inside-out mesh is turned.
+    /// welded if the mesh is open without, and bodies that are inside out are turned.
     ///
     /// Only points with equal coordinates are welded; a tolerance could close what was
     /// meant to be apart.
     pub(super) fn build(mut self) -> Result<Built, Located> {
-        let mut made = Mesh::from_polygons(self.points.clone(), &self.faces);
-        if matches!(made, Err(MeshError::OpenEdges { .. })) && self.weld() {
-            made = Mesh::from_polygons(self.points.clone(), &self.faces);
+        let mut checked = self.triangles();
+        if matches!(checked, Err(MeshError::OpenEdges { .. })) && self.weld() {
+            checked = self.triangles();
         }
-        let turned = matches!(made, Err(MeshError::InsideOut { .. }));
-        if turned {
-            for face in &mut self.faces {
-                face.reverse();
-            }
-            made = Mesh::from_polygons(self.points, &self.faces);
-        }
-        match made {
-            Ok(mesh) => Ok(Built { mesh, turned }),
-            Err(error) => Err(Located::nowhere(ReadErrorKind::Mesh(error))),
-        }
+        let mut triangles =
+            checked.map_err(|error| Located::nowhere(ReadErrorKind::Mesh(error)))?;
+        let turned = turn(&self.points, &mut triangles);
+        Ok(Built { mesh: Mesh::from_closed(self.points, triangles), turned })
+    }
+
+    /// The faces as triangles, which are closed.
+    fn triangles(&self) -> Result<Vec<[u32; 3]>, MeshError> {
+        let triangles = mesh::triangulated(&self.points, &self.faces)?;
+        mesh::check_closed(&self.points, &triangles)?;
+        Ok(triangles)
     }
 
     /// Makes faces name the first of equal points, and drops faces that this leaves

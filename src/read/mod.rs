@@ -20,6 +20,7 @@ mod options;
 mod scad;
 mod stl;
 mod tessellate;
+mod turn;
 mod words;
 
 use std::path::Path;
