@@ -1,7 +1,9 @@
 //! Unions, differences and intersections.
 //!
 //! The first operand that is not empty says whether an operation is plane or solid;
-//! operands of the other dimension are left out with a warning.
+//! operands of the other dimension count as empty, with a warning. (In OpenSCAD 2021.01 an
+//! empty primitive still has a dimension, though a group around it has none:
+//! `union() { circle(r = 0); cube(1); }` is nothing there and the cube here.)
 //!
 //! Plane shapes are prisms from z = 0 to 1, and extrusion distributes over the operators,
 //! so plane operators are solid ones. What is subtracted is stretched to z = −1 … 2 first:
@@ -48,7 +50,8 @@ pub(super) fn difference(
     Ok(alike.dimension.shape(joined(Op::Difference, solids)))
 }
 
-/// What all children share; nothing when any is empty.
+/// What all children share; nothing when any is empty or of another dimension than the
+/// first.
 pub(super) fn intersection(
     call: &Call<'_>,
     children: Vec<Shape>,
@@ -57,7 +60,11 @@ pub(super) fn intersection(
     if children.iter().any(|c| matches!(c, Shape::Empty)) {
         return Ok(Shape::Empty);
     }
+    let count = children.len();
     let alike = Alike::new(children, &quoted(call), call.place(), reading);
+    if alike.solids.len() < count {
+        return Ok(Shape::Empty);
+    }
     Ok(alike.dimension.shape(joined(Op::Intersection, alike.solids)))
 }
 
@@ -140,8 +147,8 @@ impl Alike {
                 place,
                 format!(
                     "{name} starts {this}-dimensional; {others} {other}-dimensional \
-                     {} ignored",
-                    if others == 1 { "child is" } else { "children are" }
+                     {} as nothing",
+                    if others == 1 { "child counts" } else { "children count" }
                 ),
             );
         }

@@ -165,8 +165,16 @@ fn dimensions_are_not_mixed() {
     let read = model("difference() { cube(2); square(1); }", Curves::Auto);
     assert!(contains(&read.solid, DVec3::splat(0.5)));
     let message = "1:1: `difference` starts three-dimensional; 1 two-dimensional child \
-                   is ignored";
+                   counts as nothing";
     assert_eq!(read.warnings[0].to_string(), message);
+    for text in [
+        "intersection() { cube(2); square(1); }",
+        "intersection() { cube(2); cube(1); group() { square(1); } }",
+        "linear_extrude(height = 3) intersection() { square(1); cube(2); }",
+    ] {
+        assert_eq!(row(text), "......", "{text}");
+        assert_eq!(model(text, Curves::Auto).warnings.len(), 1, "{text}");
+    }
 }
 
 #[test]
