@@ -41,7 +41,8 @@ pub(super) fn circle(
     Ok(Shape::Flat(prism.solid(call, reading)?))
 }
 
-/// The even-odd fill of all paths; without paths, of one path through all points.
+/// The even-odd fill of all paths; without paths, of one path through all points. An
+/// empty list of paths is none at all.
 pub(super) fn polygon(
     call: &Call<'_>,
     _: Vec<Shape>,
@@ -57,7 +58,8 @@ pub(super) fn polygon(
         );
     }
     let mut dropped = 0;
-    let paths = match call.vector("paths")? {
+    let lists = call.vector("paths")?.filter(|lists| !lists.is_empty());
+    let paths = match lists {
         None => vec![points],
         Some(lists) => {
             let mut paths = Vec::with_capacity(lists.len());
