@@ -224,6 +224,19 @@ fn mesh_formats_are_read() {
     assert_eq!(turned.warnings[0].message, "the mesh was inside out and has been turned");
 }
 
+#[test]
+fn colours_of_obj_points_are_skipped() {
+    let faces = "f 3 2 1\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    for points in [
+        "v 0 0 0\nv 6 0 0 1 .5 0\nv 0 6 0\nv 0 0 6\n",
+        "v 0 0 0 1 1 1\nv 6 0 0 1 1 1\n v  0 6 0 1 1 1 \nv 0 0 6\n",
+        "v 0 0 0 1 1 1 1\nv 6 0 0 1 1 1 .5\nv 0 6 \\\n0 1 1 1 1\nv\t0\t0\t6\t1\t1 1 1\n",
+        "v 0 0 0 1\nv 6 0 0 1.0\nv 0 6 0 1\nv 0 0 12 2\n",
+    ] {
+        assert_tetrahedron(&bytes([points, faces].concat(), Format::Obj).unwrap());
+    }
+}
+
 /// The triangles of a tetrahedron.
 fn triangles() -> [[[f32; 3]; 3]; 4] {
     let p = [[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 6.0]];

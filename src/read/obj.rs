@@ -1,7 +1,9 @@
 //! Wavefront `.obj`, through the crate tobj.
 //!
 //! It gets the lines that say where points and faces are, without comments and with
-//! continued lines joined. Groups and materials do not change the solid and would only
+//! continued lines joined. Points come without the colours that many programs write after
+//! their coordinates: tobj wants a colour at every point or at none, and none of four
+//! parts. A fourth word alone is a weight. Groups and materials do not change the solid and would only
 //! split its points among several meshes; texture coordinates, normals, lines and
 //! free-form curves are of no use here. Faces keep their corners: tobj would make fans of
 //! them, which is wrong for concave ones.
@@ -67,11 +69,7 @@ impl Lines<'_> {
         self.given = 0;
         while self.ready.is_empty() && !self.left.is_empty() {
             while self.take_line() {}
-            let keyword =
-                self.ready.split(u8::is_ascii_whitespace).find(|w| !w.is_empty());
-            if !matches!(keyword, Some(b"v" | b"f")) {
-                self.ready.clear();
-            }
+            self.ready.truncate(wanted(&self.ready));
         }
         if !self.ready.is_empty() {
             self.ready.push(b'\n');
@@ -90,6 +88,30 @@ impl Lines<'_> {
         self.ready.extend_from_slice(text.strip_suffix(b"\\").unwrap_or(text));
         continued && !self.left.is_empty()
     }
+}
+
+/// How much of a line tobj gets.
+fn wanted(line: &[u8]) -> usize {
+    let mut words = words(line);
+    match words.next().map(|at| &line[at]) {
+        Some(b"f") => line.len(),
+        Some(b"v") => {
+            let ends: Vec<usize> = words.map(|at| at.end).collect();
+            if let [_, _, z, _, _, ..] = ends[..] { z } else { line.len() }
+        }
+        _ => 0,
+    }
+}
+
+/// Where the words of a line are.
+fn words(line: &[u8]) -> impl Iterator<Item = std::ops::Range<usize>> {
+    let mut from = 0;
+    let ranges = line.split(u8::is_ascii_whitespace).map(move |word| {
+        let at = from..from + word.len();
+        from = at.end + 1;
+        at
+    });
+    ranges.filter(|at| !at.is_empty())
 }
 
 impl Read for Lines<'_> {
