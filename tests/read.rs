@@ -268,6 +268,8 @@ fn stl_is_read_as_text_and_binary() {
         text += "endloop\nendfacet\n";
     }
     text += "endsolid a b\n";
+    let flat = text.replacen("normal 0 0 0", "normal -nan(ind) 1.#IND 0", 2);
+    assert_tetrahedron(&bytes(flat, Format::Stl).unwrap());
     for file in [text.clone().into_bytes(), binary_stl(b"x"), binary_stl(b"solid x")] {
         assert_tetrahedron(&bytes(file, Format::Stl).unwrap());
     }

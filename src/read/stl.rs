@@ -84,8 +84,9 @@ fn text(bytes: &[u8]) -> Result<Faces, Located> {
             }
             b"facet" | b"outer" | b"loop" | b"endfacet" => {}
             b"normal" => {
+                // Flat triangles have normals that are no numbers, such as `-nan(ind)`.
                 for _ in 0..3 {
-                    words.number()?;
+                    words.next().ok_or_else(|| words.ended("a normal"))?;
                 }
             }
             _ => return Err(word.unexpected("`facet`, `vertex` or `endsolid`")),
