@@ -28,6 +28,7 @@ use cuboid::Cuboid;
 use half_space::HalfSpace;
 pub(crate) use line::Line;
 use place::Frame;
+pub(crate) use place::inverse;
 pub(crate) use plane::Plane;
 pub(crate) use polyhedron::IndexedMesh;
 use polyhedron::Polyhedron;

@@ -18,17 +18,11 @@ pub(crate) struct Frame {
 impl Frame {
     /// The frame of an affine map, or the map's determinant if it cannot be inverted.
     pub(crate) fn new(world_from_local: DAffine3) -> Result<Self, f64> {
-        let linear = world_from_local.matrix3;
-        let determinant = linear.determinant();
-        let finite = world_from_local.is_finite() && determinant.is_finite();
-        if !finite || determinant == 0.0 {
-            return Err(determinant);
-        }
-        let inverse = linear.inverse();
-        if inverse.is_finite() {
-            Ok(Self { world_from_local, inverse })
-        } else {
-            Err(determinant)
+        match inverse(&world_from_local.matrix3) {
+            Some(back) if world_from_local.is_finite() && inverse(&back).is_some() => {
+                Ok(Self { world_from_local, inverse: back })
+            }
+            _ => Err(world_from_local.matrix3.determinant()),
         }
     }
 
@@ -83,6 +77,27 @@ impl Frame {
     }
 }
 
+/// The inverse of a matrix that has one in finite numbers.
+///
+/// Columns are brought to size 1 first, for a determinant is a product of three sizes,
+/// which leaves the range of numbers long before the sizes do. Powers of two round nothing,
+/// so that where this is not needed it changes no bit.
+pub(crate) fn inverse(matrix: &DMat3) -> Option<DMat3> {
+    let axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let scales = axes.map(|axis| {
+        let exponent = axis.abs().max_element().log2().floor();
+        (-exponent.clamp(-1000.0, 1000.0)).exp2()
+    });
+    let [x, y, z] = [0, 1, 2].map(|i| axes[i] * scales[i]);
+    let level = DMat3::from_cols(x, y, z);
+    let determinant = level.determinant();
+    if !determinant.is_finite() || determinant == 0.0 {
+        return None;
+    }
+    let inverse = DMat3::from_diagonal(DVec3::from_array(scales)) * level.inverse();
+    inverse.is_finite().then_some(inverse)
+}
+
 /// The way from the world into a leaf's frame. The translation is taken off first: that
 /// rounds less than the inverse of the whole map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,8 +115,45 @@ impl ToLocal {
         self.linear * world
     }
 
+    /// The linear part of the way back, which [`Frame::new`] has found to exist.
+    pub(crate) fn linear_to_world(&self) -> DMat3 {
+        inverse(&self.linear).unwrap_or(DMat3::ZERO)
+    }
+
     /// A local normal back in the world, of any length.
     pub(crate) fn normal_to_world(&self, local: DVec3) -> DVec3 {
         self.linear.transpose() * local
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sizes whose cubes are no numbers any more.
+    #[test]
+    fn tiny_and_huge_maps_are_inverted() {
+        let turn = DMat3::from_rotation_z(0.3) * DMat3::from_rotation_x(1.1);
+        for scales in [
+            DVec3::splat(1e-120),
+            DVec3::splat(1e120),
+            DVec3::new(1e-120, 4e-120, 3e-121),
+            DVec3::new(3.0, 5.0, 0.7),
+        ] {
+            let matrix = turn * DMat3::from_diagonal(scales);
+            let map = DAffine3 { matrix3: matrix, translation: DVec3::ONE };
+            let frame = Frame::new(map).unwrap();
+            let one = frame.inverse * matrix;
+            let error = one * DVec3::ONE - DVec3::ONE;
+            assert!(error.abs().max_element() < 1e-14, "{scales}: {error}");
+        }
+        let uneven = DVec3::new(1e-200, 1.0, 1e-200);
+        let inverted = inverse(&DMat3::from_diagonal(uneven)).unwrap() * uneven;
+        assert!((inverted - DVec3::ONE).abs().max_element() < 1e-15, "{inverted}");
+        let plain = turn * DMat3::from_diagonal(DVec3::new(3.0, 5.0, 0.7));
+        assert_eq!(inverse(&plain), Some(plain.inverse()));
+        for scales in [DVec3::new(1.0, 0.0, 1.0), DVec3::splat(f64::NAN)] {
+            assert!(Frame::new(DAffine3::from_scale(scales)).is_err());
+        }
     }
 }

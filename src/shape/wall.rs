@@ -136,7 +136,7 @@ impl Wall {
     /// A point that walls on one quadric have in common: the centre, vertex or apex, or
     /// for cylinders the point of the axis closest to a given one.
     pub(crate) fn landmark(&self, near: DVec3) -> DVec3 {
-        let world_from_local = self.to_local.linear.inverse();
+        let world_from_local = self.to_local.linear_to_world();
         let at =
             |z: f64| self.to_local.origin + world_from_local * DVec3::new(0.0, 0.0, z);
         match self.profile {
@@ -182,7 +182,7 @@ impl Wall {
         let [bottom, top] = self.ends;
         let radius = self.profile.largest_radius(bottom, top);
         let scale = DVec3::new(radius, radius, 0.5 * (top - bottom));
-        let back = self.to_local.linear.inverse();
+        let back = self.to_local.linear_to_world();
         let origin = self.to_local.origin + back * DVec3::new(0.0, 0.0, self.middle);
         let map = back * DMat3::from_diagonal(scale);
         let (ours, theirs) = (self.form(origin, map), other.form(origin, map));
@@ -236,7 +236,7 @@ impl Wall {
         if let Profile::Ball { .. } = self.profile {
             return *self;
         }
-        let back = other.to_local.linear.inverse();
+        let back = other.to_local.linear_to_world();
         let here = |z: f64| {
             self.to_local.point(other.to_local.origin + back * DVec3::new(0.0, 0.0, z)).z
         };

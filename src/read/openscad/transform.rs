@@ -8,6 +8,7 @@ use super::combine;
 use super::evaluate::Reading;
 use super::node::Shape;
 use crate::color::Color;
+use crate::shape::inverse;
 
 /// The children under an affine map. Of a plane shape only x and y are mapped. A matrix
 /// that flattens (scale 0) or is not finite makes nothing, with a warning: OpenSCAD
@@ -72,13 +73,9 @@ fn plane(map: DAffine3) -> DAffine3 {
     }
 }
 
-/// Whether a map is finite and flattens nothing. Columns are scaled to size 1 before
-/// their determinant is taken, so that neither huge nor tiny scales pass for singular.
+/// Whether a map is finite and flattens nothing, by the measure that leaves are placed by.
 fn is_regular(map: &DAffine3) -> bool {
-    let axes = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
-    let [x, y, z] = axes.map(|axis| axis / axis.abs().max_element());
-    let determinant = DMat3::from_cols(x, y, z).determinant();
-    map.is_finite() && determinant.is_finite() && determinant != 0.0
+    map.is_finite() && inverse(&map.matrix3).is_some()
 }
 
 /// The children in a colour. OpenSCAD prints one with −1 where none was given.
