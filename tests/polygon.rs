@@ -53,6 +53,31 @@ fn a_star_in_one_stroke_is_filled() {
     assert!(filled > 0.5 && filled < std::f64::consts::PI, "{filled}");
 }
 
+/// A path through so many points, each anywhere in a square.
+fn scribble(points: u64) -> Vec<DVec2> {
+    let mut state = 1_u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..points).map(|_| dvec2(next(), next())).collect()
+}
+
+#[test]
+fn a_scribble_is_filled_or_refused_soon() {
+    for points in [150, 300] {
+        let filled = area(&[scribble(points)]);
+        assert!(filled > 0.3 && filled < 0.6, "{filled}");
+    }
+    for points in [3_000, 40_000] {
+        let start = std::time::Instant::now();
+        let refused = Mesh::prism(&[scribble(points)], 0.0, 1.0).unwrap_err();
+        assert!(matches!(refused, MeshError::Tangled { .. }));
+        // Two seconds at most on an idle machine; minutes if nothing bounds the work.
+        assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+    }
+}
+
 #[test]
 fn sizes_do_not_matter() {
     for scale in [1e-300, 1e-100, 1e-9, 1e9, 1e90] {

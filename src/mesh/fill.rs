@@ -22,6 +22,14 @@ use super::error::MeshError;
 /// How often edges are cut before the outline is refused; two rounds are usual.
 const ROUNDS: usize = 50;
 
+/// The work after which an outline is refused, which is a second or so: [`CUT`] for each
+/// crossing that is cut, and 1 for each point that cuts have made whenever all points are
+/// triangulated again. The points of the outline itself are free.
+const WORK: usize = 200_000;
+
+/// The work of cutting two edges where they cross.
+const CUT: usize = 2;
+
 /// A filled outline.
 #[derive(Debug)]
 pub(super) struct Fill {
@@ -50,7 +58,7 @@ pub(super) fn even_odd(paths: &[Vec<DVec2>]) -> Result<Fill, MeshError> {
         let next = corners.iter().cycle().skip(1);
         edges.extend(corners.iter().zip(next).map(|(&a, &b)| [a, b]));
     }
-    let limit = 64 * points.exact.len() + 4096;
+    let (given, mut left) = (points.exact.len(), WORK);
     for _ in 0..ROUNDS {
         let mut edges_once = modulo_two(std::mem::take(&mut edges));
         let Some(mut plane) = plane(&points) else { break };
@@ -58,9 +66,10 @@ pub(super) fn even_odd(paths: &[Vec<DVec2>]) -> Result<Fill, MeshError> {
         if crossing.is_empty() {
             return Ok(flood(&plane, points.exact, &modulo_two(edges)));
         }
-        cut(&plane, &mut points, &mut edges, &crossing)?;
-        if points.exact.len() > limit {
-            break;
+        cut(&plane, &mut points, &mut edges, &crossing, &mut left)?;
+        match left.checked_sub(points.exact.len() - given) {
+            Some(rest) => left = rest,
+            None => break,
         }
     }
     Err(MeshError::Tangled { points: points.exact.len() })
@@ -173,17 +182,23 @@ fn constrain(
     crossing
 }
 
-/// Cuts the crossing edges and those they cross, and adds the former to the edges.
+/// Cuts the crossing edges and those they cross, and adds the former to the edges. The
+/// work that is left is counted down.
 fn cut(
     plane: &Plane,
     points: &mut Points,
     edges: &mut Vec<[u32; 2]>,
     crossing: &[[u32; 2]],
+    left: &mut usize,
 ) -> Result<(), MeshError> {
     let mut cuts: Vec<([u32; 2], u32)> = Vec::new();
     for &edge in crossing {
         let [a, b] = edge.map(vertex);
         for other in plane.get_conflicting_edges_between_vertices(a, b) {
+            let Some(rest) = left.checked_sub(CUT) else {
+                return Err(MeshError::Tangled { points: points.exact.len() });
+            };
+            *left = rest;
             let mut crossed = [other.from(), other.to()].map(|v| index(v.fix()));
             crossed.sort_unstable();
             let ends = [edge, crossed].map(|e| e.map(|i| points.scaled[i as usize]));
