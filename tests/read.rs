@@ -271,7 +271,9 @@ fn stl_is_read_as_text_and_binary() {
     let flat = text.replacen("normal 0 0 0", "normal -nan(ind) 1.#IND 0", 2);
     assert_tetrahedron(&bytes(flat, Format::Stl).unwrap());
     for file in [text.clone().into_bytes(), binary_stl(b"x"), binary_stl(b"solid x")] {
-        assert_tetrahedron(&bytes(file, Format::Stl).unwrap());
+        let model = bytes(file, Format::Stl).unwrap();
+        assert_tetrahedron(&model);
+        assert_eq!(mesh(&model).points().len(), 4);
     }
     let mut short = binary_stl(b"");
     short[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
@@ -365,6 +367,18 @@ fn cavities_stay() {
         assert_eq!(mesh(&model).volume(), f64::from(volume), "{sizes:?}");
         assert_eq!(model.counts.turned, turned, "{sizes:?}");
     }
+}
+
+#[test]
+fn points_listed_several_times_are_kept_once() {
+    let mut off = "OFF 12 4 0\n".to_owned();
+    for [x, y, z] in triangles().into_iter().flatten() {
+        off += &format!("{x} {y} {z}\n");
+    }
+    off += "3 0 1 2\n3 3 4 5\n3 6 7 8\n3 9 10 11\n";
+    let model = bytes(off, Format::Off).unwrap();
+    assert_tetrahedron(&model);
+    assert_eq!(mesh(&model).points().len(), 4);
 }
 
 #[test]

@@ -50,19 +50,19 @@ impl Faces {
         Ok(triangles)
     }
 
-    /// Makes faces name the first of equal points, and drops faces that this leaves
-    /// without area. Whether any points were equal.
+    /// Keeps one of equal points each, and drops faces that this leaves without area.
+    /// Whether any points were equal.
     fn weld(&mut self) -> bool {
-        let mut first: HashMap<[u64; 3], u32> = HashMap::new();
+        let mut distinct = Points::default();
         let mut same = Vec::with_capacity(self.points.len());
-        for (index, p) in (0_u32..).zip(&self.points) {
-            // Adding zero makes −0 and 0 one number.
-            let bits = (*p + DVec3::ZERO).to_array().map(f64::to_bits);
-            same.push(*first.entry(bits).or_insert(index));
+        for &point in &self.points {
+            let Some(index) = distinct.add(point) else { return false };
+            same.push(index);
         }
-        if first.len() == self.points.len() {
+        if distinct.points.len() == self.points.len() {
             return false;
         }
+        self.points = distinct.finish();
         for face in &mut self.faces {
             for index in face.iter_mut() {
                 *index = same[*index as usize];
@@ -74,5 +74,32 @@ impl Faces {
         }
         self.faces.retain(|face| face.len() > 2);
         true
+    }
+}
+
+/// Distinct points in the order in which they come.
+#[derive(Debug, Default)]
+pub(super) struct Points {
+    points: Vec<DVec3>,
+    found: HashMap<[u64; 3], u32>,
+}
+
+impl Points {
+    /// The index of a point; none when there are more points than indices.
+    pub(super) fn add(&mut self, point: DVec3) -> Option<u32> {
+        let next = u32::try_from(self.points.len()).ok()?;
+        // Adding zero makes −0 and 0 one number.
+        let bits = (point + DVec3::ZERO).to_array().map(f64::to_bits);
+        let index = *self.found.entry(bits).or_insert(next);
+        if index == next {
+            self.points.push(point);
+        }
+        Some(index)
+    }
+
+    /// The points, without room for more.
+    pub(super) fn finish(mut self) -> Vec<DVec3> {
+        self.points.shrink_to_fit();
+        self.points
     }
 }

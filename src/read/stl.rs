@@ -1,12 +1,15 @@
 //! Stereolithography `.stl`, as text and binary.
 //!
+//! Every triangle lists its corners anew. They are made one as they are read, which takes
+//! half a point a triangle instead of three.
+//!
 //! The crate `stl_io` is not used: it rounds the 17 digits of text to f32, and takes binary
 //! files whose header starts with `solid` for text.
 
 use glam::DVec3;
 
 use super::error::{Located, ReadErrorKind};
-use super::faces::Faces;
+use super::faces::{Faces, Points};
 use super::words::Words;
 
 /// Bytes before the first triangle: a header without meaning, and the count.
@@ -16,7 +19,7 @@ const TRIANGLE: usize = 50;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Faces, Located> {
     // Many programs write `solid` into the header of binary files, so the length decides
-    // first. Three points a triangle: equal ones are welded when the mesh is built.
+    // first.
     let fits = declared(bytes).is_some_and(|n| bytes.len() as u64 == size(n));
     if !fits && is_text(bytes) { text(bytes) } else { binary(bytes) }
 }
@@ -49,7 +52,7 @@ fn binary(bytes: &[u8]) -> Result<Faces, Located> {
     if present < declared {
         return Err(Located::nowhere(ReadErrorKind::Truncated { declared, present }));
     }
-    let mut read = Faces::default();
+    let mut read = Soup::default();
     let count = usize::try_from(declared).unwrap_or(usize::MAX);
     for triangle in triangles.take(count) {
         let number = |at: usize| {
@@ -58,16 +61,16 @@ fn binary(bytes: &[u8]) -> Result<Faces, Located> {
         };
         let corners =
             [12, 24, 36].map(|at| DVec3::new(number(at), number(at + 4), number(at + 8)));
-        push(&mut read, &corners)?;
+        read.push(&corners)?;
     }
-    Ok(read)
+    Ok(read.finish())
 }
 
 /// The words of text files are loose in practice: case and line breaks vary, normals are
 /// missing. What counts is the vertices of each loop.
 fn text(bytes: &[u8]) -> Result<Faces, Located> {
     let mut words = Words::new(bytes, None);
-    let (mut read, mut corners) = (Faces::default(), Vec::new());
+    let (mut read, mut corners) = (Soup::default(), Vec::new());
     while let Some(word) = words.next() {
         match word.text.to_ascii_lowercase().as_slice() {
             b"solid" | b"endsolid" => words.skip_line(),
@@ -79,7 +82,7 @@ fn text(bytes: &[u8]) -> Result<Faces, Located> {
                 return Err(word.unexpected("a third `vertex`"));
             }
             b"endloop" => {
-                push(&mut read, &corners)?;
+                read.push(&corners)?;
                 corners.clear();
             }
             b"facet" | b"outer" | b"loop" | b"endfacet" => {}
@@ -92,24 +95,33 @@ fn text(bytes: &[u8]) -> Result<Faces, Located> {
             _ => return Err(word.unexpected("`facet`, `vertex` or `endsolid`")),
         }
     }
-    if corners.is_empty() { Ok(read) } else { Err(words.ended("`endloop`")) }
+    if corners.is_empty() { Ok(read.finish()) } else { Err(words.ended("`endloop`")) }
 }
 
-/// Adds a face, unless it has no area because two of its three corners are equal.
-fn push(read: &mut Faces, corners: &[DVec3]) -> Result<(), Located> {
-    if let [a, b, c] = corners
-        && (a == b || b == c || c == a)
-    {
-        return Ok(());
-    }
-    let mut face = Vec::with_capacity(corners.len());
-    for &corner in corners {
-        let Ok(index) = u32::try_from(read.points.len()) else {
+/// The faces read so far.
+#[derive(Default)]
+struct Soup {
+    points: Points,
+    faces: Vec<Vec<u32>>,
+}
+
+impl Soup {
+    /// Adds a face, unless it has no area because two of its three corners are equal.
+    fn push(&mut self, corners: &[DVec3]) -> Result<(), Located> {
+        if let [a, b, c] = corners
+            && (a == b || b == c || c == a)
+        {
+            return Ok(());
+        }
+        let add = |&corner: &DVec3| self.points.add(corner);
+        let Some(face) = corners.iter().map(add).collect() else {
             return Err(Located::nowhere(ReadErrorKind::TooLong(usize::MAX)));
         };
-        read.points.push(corner);
-        face.push(index);
+        self.faces.push(face);
+        Ok(())
     }
-    read.faces.push(face);
-    Ok(())
+
+    fn finish(self) -> Faces {
+        Faces { points: self.points.finish(), faces: self.faces }
+    }
 }
