@@ -42,6 +42,41 @@ impl Aabb {
         Self::new(self.min.max(other.min), self.max.min(other.max))
     }
 
+    /// A box around what is left when some boxes are taken away: smaller where one of them
+    /// cuts off an end straight across.
+    #[must_use]
+    pub(crate) fn trimmed(mut self, cutters: &[Self]) -> Self {
+        /// One cut can make way for another, but a few rounds are enough for what people
+        /// build.
+        const ROUNDS: usize = 8;
+        for _ in 0..ROUNDS {
+            let before = self;
+            cutters.iter().for_each(|cutter| self.trim(cutter));
+            if self == before {
+                break;
+            }
+        }
+        self
+    }
+
+    fn trim(&mut self, cutter: &Self) {
+        let (starts_before, ends_behind) =
+            (cutter.min.cmple(self.min), cutter.max.cmpge(self.max));
+        for axis in 0..3 {
+            let across = (1..3)
+                .map(|k| (axis + k) % 3)
+                .all(|k| starts_before.test(k) && ends_behind.test(k));
+            if !across {
+                continue;
+            }
+            if starts_before.test(axis) && cutter.max[axis] > self.min[axis] {
+                self.min[axis] = cutter.max[axis];
+            } else if ends_behind.test(axis) && cutter.min[axis] < self.max[axis] {
+                self.max[axis] = cutter.min[axis];
+            }
+        }
+    }
+
     /// Whether no point lies inside.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()

@@ -1,5 +1,6 @@
 //! What you say: an immutable tree of primitives, meshes, maps and Boolean operators.
 
+use std::collections::HashMap;
 use std::fmt;
 use std::ops::{Add, BitAnd, Sub};
 use std::sync::Arc;
@@ -49,6 +50,8 @@ pub(crate) enum Tag {
     Name(Arc<str>),
     Color(Color),
     Place(Place),
+    /// One body to the eye: what is subtracted within it leaves walls of its own.
+    Outline,
 }
 
 /// Where in a file something stands, counted from 1.
@@ -191,6 +194,35 @@ impl Solid {
     }
 }
 
+impl Solid {
+    /// How many nodes the tree has when every shared subtree is written out as often as it
+    /// occurs; `u64::MAX` for that many or more.
+    pub(crate) fn size(&self) -> u64 {
+        let mut known: HashMap<*const Node, u64> = HashMap::new();
+        // Nodes on the way down, each with the children yet to visit and the sum so far.
+        let mut open = vec![(self, self.node().children.iter(), 1_u64)];
+        loop {
+            let Some((solid, rest, sum)) = open.last_mut() else { return 0 };
+            if let Some(child) = rest.next() {
+                match known.get(&Arc::as_ptr(&child.0)) {
+                    Some(size) => *sum = sum.saturating_add(*size),
+                    None => open.push((child, child.node().children.iter(), 1)),
+                }
+                continue;
+            }
+            let (solid, size) = (*solid, *sum);
+            open.pop();
+            if Arc::strong_count(&solid.0) > 1 {
+                known.insert(Arc::as_ptr(&solid.0), size);
+            }
+            match open.last_mut() {
+                Some((_, _, sum)) => *sum = sum.saturating_add(size),
+                None => return size,
+            }
+        }
+    }
+}
+
 /// # Combinations, maps and tags
 impl Solid {
     /// The children combined by an operator; `a + b`, `a - b` and `a & b` are short for
@@ -251,6 +283,13 @@ impl Solid {
     #[must_use]
     pub fn placed(self, place: Place) -> Self {
         self.tagged(Tag::Place(place))
+    }
+
+    /// With all its walls counted as its own in [`Leaf::subtracted`](crate::Leaf), those of
+    /// operands that are subtracted within it too: as if it were one leaf.
+    #[must_use]
+    pub fn as_outline(self) -> Self {
+        self.tagged(Tag::Outline)
     }
 
     fn tagged(self, tag: Tag) -> Self {

@@ -237,3 +237,33 @@ fn sizes_whose_squares_are_no_numbers_are_refused() {
         assert!(solidray::Scene::compile(&Solid::ball(radius)).is_err(), "{radius}");
     }
 }
+
+#[test]
+fn bounds_end_where_a_box_cuts_straight_across() {
+    let half = Solid::cuboid_between(dvec3(1.0, -9.0, -9.0), DVec3::splat(9.0));
+    let corner = Solid::cuboid_between(dvec3(-9.0, 0.5, 0.5), DVec3::splat(9.0));
+    let solid = cube(6.0) - half.clone() - corner.clone();
+    let bounds = scene(&solid).bounds();
+    assert_eq!((bounds.min, bounds.max), (DVec3::splat(-3.0), dvec3(1.0, 3.0, 3.0)));
+    // One cut makes way for another, and lines beside what is left find what cut it.
+    let low = Solid::cuboid_between(DVec3::splat(-9.0), dvec3(9.0, 9.0, 0.5));
+    let bounds = scene(&(solid.clone() - low.clone())).bounds();
+    assert_eq!((bounds.min, bounds.max), (dvec3(-3.0, -3.0, 0.5), dvec3(1.0, 0.5, 3.0)));
+    for y in [-2.0, 0.2, 1.0, 2.5] {
+        for z in [-2.0, 0.2, 0.7, 2.5] {
+            for (dir, from) in [
+                (DVec3::X, dvec3(-10.0, y, z)),
+                (Z, dvec3(y, z, -10.0)),
+                (DVec3::Y, dvec3(z, -10.0, y)),
+            ] {
+                let ray = Ray::new(from, dir + 0.3 * dvec3(0.1, 0.2, 0.3));
+                let all = ends(&(solid.clone() - low.clone()), &ray);
+                let kept = solid.clone() & Solid::half_space(-Z, -0.5);
+                assert_eq!(all.len(), ends(&kept, &ray).len(), "{ray:?}");
+            }
+        }
+    }
+    assert!(
+        scene(&(cube(1.0) - half.translated(DVec3::splat(-4.0)))).bounds().is_empty()
+    );
+}

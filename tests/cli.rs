@@ -261,6 +261,15 @@ fn standard_input_is_the_model_or_the_list() {
 }
 
 #[test]
+fn a_round_that_comes_too_late_is_given_up() {
+    let desk = Desk::new();
+    let done = desk.run(&["volume", "ball.csg", "--time-limit", "1e-9", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&done.out).expect("one object");
+    assert_eq!((&json["resolved"], &json["rays"]), (&false.into(), &0.into()));
+    assert!(json["interval"][1].as_f64() >= Some(216.0), "the whole box: {}", done.out);
+}
+
+#[test]
 fn compare_tells_same_from_different() {
     let desk = Desk::new();
     desk.put("larger.csg", "sphere($fn = 0, $fa = 12, $fs = 2, r = 3.3);\n");
@@ -353,6 +362,52 @@ fn render_takes_a_camera() {
     assert_eq!(pictures[0], pictures[1], "two ways to say the same camera");
     let done = desk.run(&["render", "tube.csg", "-o", "v.png", "--camera=1,2,3"]);
     assert_eq!(done.code, 2);
+}
+
+#[test]
+fn whoever_asks_for_json_gets_an_object_even_of_an_error() {
+    let desk = Desk::new();
+    for args in [
+        &["volume", "gone.csg"][..],
+        &["render", "tube.csg", "-o", "no/t.png"],
+        &["check", "gone.csg"],
+        &["compare", "tube.csg", "gone.csg"],
+    ] {
+        let done = desk.run(&[args, &["--json"]].concat());
+        assert_eq!(done.code, 2, "{args:?}");
+        let json: serde_json::Value =
+            serde_json::from_str(&done.out).expect("one object");
+        assert_eq!(json["schema"], 1);
+        assert!(json["error"].as_str().is_some_and(|e| done.err.contains(e)), "{json}");
+    }
+    let done =
+        desk.run_with_input(&["contains", "tube.csg", "--json"], "x,y,z\n4,0,5\nbad\n");
+    assert_eq!(done.code, 2);
+    let json: serde_json::Value = serde_json::from_str(&done.out).expect("one object");
+    assert_eq!(json["points"][0]["where"], "in");
+    assert!(json["error"].as_str().is_some_and(|e| e.contains("line 3")), "{json}");
+}
+
+#[test]
+fn plane_differences_leave_walls_like_any_other() {
+    let desk = Desk::new();
+    let circle = |r: u32| format!("circle($fn = 0, $fa = 12, $fs = 2, r = {r});");
+    desk.put(
+        "ring.csg",
+        &format!(
+            "linear_extrude(height = 3) {{ difference() {{ {} {} }} }}",
+            circle(5),
+            circle(3)
+        ),
+    );
+    let colours = |file: &str| {
+        let done = desk.run(&["render", file, "-o", "c.png", "--imgsize", "60,40"]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        let picture = image::open(desk.path("c.png")).expect("a picture").to_rgb8();
+        picture.pixels().filter(|p| p.0[1] > p.0[0] && p.0[0] > p.0[2]).count()
+    };
+    assert_eq!(colours("ring.csg"), 0, "no green");
+    assert!(colours("tube.csg") > 0, "green where solids are cut");
 }
 
 #[test]

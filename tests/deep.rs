@@ -4,7 +4,7 @@
 mod support;
 
 use glam::{DVec3, dvec3};
-use solidray::{Op, Ray, Solid};
+use solidray::{Op, Ray, Scene, Solid};
 use support::{ends, ends_in, scene};
 
 const MANY: u32 = 100_000;
@@ -86,4 +86,17 @@ fn a_shared_subtree_outlives_the_trees_that_hold_it() {
         drop(holder);
         assert_eq!(ends(&shared, &support::along_x(0.0, 0.0)), [[9.0, 11.0]]);
     });
+}
+
+/// Forty lines of code, a million million leaves.
+#[test]
+fn a_tree_that_shares_itself_too_often_is_refused() {
+    let doubled = (0..40).fold(Solid::ball(1.0), |solid, _| solid.clone() + solid);
+    let error = Scene::compile(&doubled).expect_err("it is too large");
+    assert_eq!(
+        error.to_string(),
+        "the solid has more than 134217728 leaves, operators, maps and tags"
+    );
+    let few = (0..10).fold(Solid::ball(1.0), |solid, _| solid.clone() + solid);
+    assert_eq!(Scene::compile(&few).expect("it is small").leaf_count(), 1024);
 }

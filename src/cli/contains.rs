@@ -69,14 +69,21 @@ impl Contains {
             }
             Ok(())
         };
-        if self.points.is_empty() {
-            lines_of_numbers(each)?;
+        let done = if self.points.is_empty() {
+            lines_of_numbers(each)
         } else {
-            self.points.iter().map(|p| p.0).try_for_each(each)?;
-        }
+            self.points.iter().map(|p| p.0).try_for_each(each)
+        };
         if global.json {
-            writeln!(out, "]}}")?;
+            // The object is whole even if the list of points is not.
+            write!(out, "]")?;
+            if let Err(error) = &done {
+                write!(out, ",\"error\":")?;
+                serde_json::to_writer(&mut *out, &format!("{error:#}"))?;
+            }
+            writeln!(out, "}}")?;
         }
+        done?;
         Ok(answer)
     }
 }

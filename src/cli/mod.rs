@@ -113,23 +113,51 @@ impl Command {
     }
 }
 
+/// Standard output, and whether anything was written to it.
+struct Output<W: Write> {
+    inner: io::BufWriter<W>,
+    used: bool,
+}
+
+impl<W: Write> Write for Output<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.used = true;
+        self.inner.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}
+
+/// The object that `--json` prints when something could not be done.
+#[derive(serde::Serialize)]
+struct ErrorReport {
+    error: String,
+}
+
 /// Runs the program. Usage errors end in clap, with code 2.
 pub(crate) fn main() -> ExitCode {
     let Cli { command, global } = Cli::parse_from(std::env::args_os().map(as_value));
-    let mut out = io::BufWriter::new(io::stdout().lock());
-    let result = start_threads(global)
-        .and_then(|()| command.run(global, &mut out))
-        .and_then(|answer| Ok(out.flush().map(|()| answer)?));
+    let mut out = Output { inner: io::BufWriter::new(io::stdout().lock()), used: false };
+    let mut result = start_threads(global).and_then(|()| command.run(global, &mut out));
+    if let (Err(error), true, false) = (&result, global.json, out.used) {
+        // Whoever asked for an object gets one.
+        let report = ErrorReport { error: format!("{error:#}") };
+        result = output::json(&mut out, report).and(result);
+    }
+    let result = result.and_then(|answer| Ok(out.flush().map(|()| answer)?));
     match result {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
         Ok(Answer::No) => ExitCode::from(1),
         // Whoever read the output has seen enough: `solidray ray … | head` is no failure.
         Err(error) if is_broken_pipe(&error) => {
             // What is left in the buffer has nowhere to go.
-            drop(out.into_parts());
+            drop(out.inner.into_parts());
             ExitCode::SUCCESS
         }
         Err(error) => {
+            let _ = out.flush();
             report::error(&error);
             ExitCode::from(2)
         }

@@ -7,6 +7,7 @@
 //! them (P. L'Ecuyer, C. Lemieux, "Variance Reduction via Lattice Rules", Management
 //! Science 46(9), 2000).
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use glam::{DVec2, DVec3};
@@ -40,7 +41,8 @@ pub struct Sampling {
     pub rel_tol: f64,
     /// No more rays than this, but at least one round of 16 lattices of 233.
     pub max_rays: u64,
-    /// No round is begun that would probably end later than this.
+    /// No round is begun that would probably end later than this, and one that does is given
+    /// up.
     pub time_limit: Option<Duration>,
     /// Which random shifts. Equal seeds give equal answers, bit by bit, on any number of
     /// threads, unless a time limit cuts one short.
@@ -63,7 +65,7 @@ pub(super) trait Tally: Default + Send {
 /// What each lattice of one round found.
 pub(super) struct Round<T> {
     pub(super) replicates: Vec<T>,
-    /// How many rays each lattice has.
+    /// How many rays each lattice has; none if not even the first round was finished.
     pub(super) size: u64,
 }
 
@@ -115,7 +117,7 @@ impl Beam {
 }
 
 /// Rounds of ever larger lattices until `enough` says so or a limit is reached. Returns the
-/// last round and the number of rays of all.
+/// last round that was finished and the number of rays of all that were.
 ///
 /// `scratch` makes what a thread needs, `sample` adds one ray to a tally.
 pub(super) fn rounds<S, T: Tally>(
@@ -127,14 +129,20 @@ pub(super) fn rounds<S, T: Tally>(
     mut enough: impl FnMut(&Round<T>, u64) -> bool,
 ) -> (Round<T>, u64) {
     let start = Instant::now();
+    let deadline = sampling.time_limit.and_then(|limit| start.checked_add(limit));
     let (mut lattice, mut rays) = (Fibonacci::at_least(FIRST), 0);
+    let mut last = Round { replicates: Vec::new(), size: 0 };
+    last.replicates.resize_with(REPLICATES, T::default);
     loop {
         let before = start.elapsed();
-        let round = round(beam, sampling.seed, lattice, progress, &scratch, &sample);
+        let seed = sampling.seed;
+        let found = round(beam, seed, lattice, deadline, progress, &scratch, &sample);
+        let Some(round) = found else { return (last, rays) };
         rays += lattice.len() * REPLICATES as u64;
         if enough(&round, rays) {
             return (round, rays);
         }
+        last = round;
         let next = Fibonacci::at_least(2 * lattice.len());
         let growth = next.len() as f64 / lattice.len() as f64;
         let took = start.elapsed() - before;
@@ -143,20 +151,22 @@ pub(super) fn rounds<S, T: Tally>(
             .is_some_and(|limit| start.elapsed() + took.mul_f64(growth) > limit);
         let more = next.len() * REPLICATES as u64;
         if late || rays + more > sampling.max_rays || next.len() == lattice.len() {
-            return (round, rays);
+            return (last, rays);
         }
         lattice = next;
     }
 }
 
+/// One round, unless the deadline comes first.
 fn round<S, T: Tally>(
     beam: &Beam,
     seed: u64,
     lattice: Fibonacci,
+    deadline: Option<Instant>,
     progress: Progress<'_>,
     scratch: &(impl Fn() -> S + Sync + Send),
     sample: &(impl Fn(&mut S, &Ray, &mut T) + Sync + Send),
-) -> Round<T> {
+) -> Option<Round<T>> {
     let size = lattice.len();
     let shift = |replicate: u64| {
         let part = |axis| unit(hash(seed, &[size, replicate, axis]));
@@ -164,17 +174,28 @@ fn round<S, T: Tally>(
     };
     let tasks_each = size.div_ceil(TASK);
     let tasks = tasks_each * REPLICATES as u64;
+    let late = AtomicBool::new(false);
     let partial = |scratch: &mut S, task: u64| {
         let (replicate, part) = (task / tasks_each, task % tasks_each);
         let (shift, mut tally) = (shift(replicate), T::default());
         let range = part * TASK..((part + 1) * TASK).min(size);
         progress(range.end - range.start);
         for i in range {
+            // Looking at the clock costs less than a ray, but not nothing.
+            if i % 64 == 0 && deadline.is_some_and(|deadline| Instant::now() > deadline) {
+                late.store(true, Ordering::Relaxed);
+            }
+            if late.load(Ordering::Relaxed) {
+                break;
+            }
             sample(scratch, &beam.ray(lattice.point(i, shift)), &mut tally);
         }
         tally
     };
     let mut partials = in_order(tasks, scratch, partial).into_iter();
+    if late.load(Ordering::Relaxed) {
+        return None;
+    }
     let replicates = (0..REPLICATES)
         .map(|_| {
             let mut total = T::default();
@@ -182,7 +203,7 @@ fn round<S, T: Tally>(
             total
         })
         .collect();
-    Round { replicates, size }
+    Some(Round { replicates, size })
 }
 
 /// The results of tasks `0..count`, in order, from as many threads as there are.

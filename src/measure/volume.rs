@@ -94,6 +94,19 @@ pub(super) fn estimate<T>(
     rel_tol: f64,
     chords: impl Fn(&T) -> Chords,
 ) -> Estimate {
+    let whole_box = beam.depth() * beam.area();
+    if round.size == 0 {
+        let interval = [0.0, whole_box];
+        let (value, method) = (0.0, Method::Lattice);
+        return Estimate {
+            value,
+            interval,
+            rays,
+            method,
+            target_met: false,
+            resolved: false,
+        };
+    }
     let chords: Vec<Chords> = round.replicates.iter().map(chords).collect();
     let per_ray = beam.area() / round.size as f64;
     let volumes: Vec<f64> = chords.iter().map(|c| c.length * per_ray).collect();
@@ -104,7 +117,7 @@ pub(super) fn estimate<T>(
     } else {
         let hits = most_hits(chords.iter().map(|c| c.hits).sum());
         let bound = beam.depth() * per_ray * hits / chords.len() as f64;
-        [0.0, bound.min(beam.depth() * beam.area())]
+        [0.0, bound.min(whole_box)]
     };
     let target_met = resolved && half_width <= rel_tol * value;
     Estimate { value, interval, rays, method: Method::Lattice, target_met, resolved }

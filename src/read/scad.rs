@@ -60,13 +60,23 @@ fn converted(
         let status = output.status.to_string();
         return Err(fault(ReadErrorKind::OpenscadFailed { status, stderr: said }));
     }
-    let text = std::fs::read(&csg).map_err(|e| fault(ReadErrorKind::Io(e)))?;
+    let text = std::fs::read(&csg).map_err(|_| {
+        let status = "it ended well, but wrote nothing".to_owned();
+        fault(ReadErrorKind::OpenscadFailed { status, stderr: said.clone() })
+    })?;
 
     // The name keeps the folder, where imports are, and tells that lines are not the
     // author's.
     let mut name = path.file_name().unwrap_or(OsStr::new("-")).to_owned();
     name.push(" as .csg");
     let mut model = openscad::read(&text, &path.with_file_name(name), options)?;
+    for warning in &mut model.warnings {
+        // Nobody has seen that file: a place in it would be looked for in the author's.
+        if let Some(place) = warning.place.take() {
+            let line = format!(" (line {} of the .csg that openscad makes)", place.line);
+            warning.message.push_str(&line);
+        }
+    }
     let lines = said.lines().filter(|l| !l.trim().is_empty());
     let warning = |l: &str| Warning { place: None, message: format!("openscad: {l}") };
     model.warnings.splice(0..0, lines.map(warning));

@@ -46,10 +46,14 @@ pub enum CompileError {
         "the solid is not bounded: a half-space needs an intersection with something bounded"
     )]
     Unbounded,
-    /// There are more leaves or operators than 32 bits count.
-    #[error("the solid has more than {} leaves or operators", u32::MAX)]
+    /// Written out, with shared subtrees as often as they occur, the tree has more nodes
+    /// than memory has room for.
+    #[error("the solid has more than {MOST_NODES} leaves, operators, maps and tags")]
     TooLarge,
 }
+
+/// The largest tree that is compiled: some 40 GB.
+const MOST_NODES: u64 = 1 << 27;
 
 /// A leaf as errors name it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -84,6 +88,8 @@ struct Context {
     name: Option<Arc<str>>,
     color: Option<Color>,
     place: Option<Place>,
+    /// Within an outline: whether that is subtracted.
+    subtracted: Option<bool>,
 }
 
 /// A subtree yet to be visited: below which node, and whether its complement is meant.
@@ -101,6 +107,7 @@ struct Compiler {
     shapes: Vec<Shape>,
     parts: Vec<u32>,
     places: Vec<Option<Place>>,
+    subtracted: Vec<bool>,
     boxes: Vec<Aabb>,
     conditions: Vec<f64>,
     part_list: Vec<Part>,
@@ -113,20 +120,29 @@ type PartKey = (Option<Arc<str>>, Option<[u32; 4]>);
 
 /// Visits the tree in its own order with a list of what is left, not by recursion.
 pub(super) fn compile(solid: &Solid) -> Result<Scene, CompileError> {
+    if solid.size() > MOST_NODES {
+        return Err(CompileError::TooLarge);
+    }
     let mut compiler = Compiler {
         program: Program::new(),
         literals: Vec::new(),
         shapes: Vec::new(),
         parts: Vec::new(),
         places: Vec::new(),
+        subtracted: Vec::new(),
         boxes: Vec::new(),
         conditions: Vec::new(),
         part_list: Vec::new(),
         part_numbers: HashMap::new(),
         meshes: HashMap::new(),
     };
-    let mut contexts =
-        vec![Context { map: DAffine3::IDENTITY, name: None, color: None, place: None }];
+    let mut contexts = vec![Context {
+        map: DAffine3::IDENTITY,
+        name: None,
+        color: None,
+        place: None,
+        subtracted: None,
+    }];
     let mut tasks = vec![Task { solid, parent: 0, complement: false, context: 0 }];
     while let Some(task) = tasks.pop() {
         let Task { solid, complement, context, .. } = task;
@@ -139,7 +155,7 @@ pub(super) fn compile(solid: &Solid) -> Result<Scene, CompileError> {
                 compiler.add_mesh(mesh, &task, &contexts[context as usize])?;
             }
             Kind::Mapped(_) | Kind::Tagged(_) => {
-                let inner = contexts[context as usize].inside(&node.kind);
+                let inner = contexts[context as usize].inside(&node.kind, complement);
                 let context =
                     u32::try_from(contexts.len()).map_err(|_| CompileError::TooLarge)?;
                 contexts.push(inner);
@@ -176,15 +192,18 @@ pub(super) fn compile(solid: &Solid) -> Result<Scene, CompileError> {
 }
 
 impl Context {
-    /// The context of the child of a map or a tag: the outermost colour and the innermost
-    /// name and place hold.
-    fn inside(&self, kind: &Kind) -> Self {
+    /// The context of the child of a map or a tag: the outermost colour and outline and the
+    /// innermost name and place hold.
+    fn inside(&self, kind: &Kind, complement: bool) -> Self {
         let mut inner = self.clone();
         match kind {
             Kind::Mapped(map) => inner.map = self.map * **map,
             Kind::Tagged(Tag::Name(name)) => inner.name = Some(name.clone()),
             Kind::Tagged(Tag::Color(color)) => inner.color = inner.color.or(Some(*color)),
             Kind::Tagged(Tag::Place(place)) => inner.place = Some(*place),
+            Kind::Tagged(Tag::Outline) => {
+                inner.subtracted = inner.subtracted.or(Some(complement));
+            }
             Kind::Primitive(_) | Kind::Mesh(_) | Kind::Boolean(_) => {}
         }
         inner
@@ -245,6 +264,7 @@ impl Compiler {
         self.boxes.push(bounds);
         self.conditions.push(condition);
         self.places.push(context.place);
+        self.subtracted.push(context.subtracted.unwrap_or(task.complement));
         let part = self.part(context);
         self.parts.push(part);
         Ok(())
@@ -265,22 +285,34 @@ impl Compiler {
         LeafName { number, kind, name: context.name.clone(), place: context.place }
     }
 
-    /// Keeps for the search only what can matter: within the solid's bounds, a leaf is as
-    /// good as its part inside them, and outside them nothing is inside anyway.
+    /// Keeps for the search only what can matter: within the solid's reach, a leaf is as
+    /// good as its part inside it, and outside nothing is inside anyway, whatever the
+    /// complements are. (For the narrower bounds that would not be true: what cuts them must be
+    /// found by lines that pass beside them.)
     fn finish(mut self) -> Result<Scene, CompileError> {
-        let bounds = self.program.bounds(&self.literals, &self.boxes);
-        if !bounds.is_empty() && !bounds.is_bounded() {
+        let reach = self.program.bounds(&self.literals, &self.boxes, &[]);
+        if !reach.is_empty() && !reach.is_bounded() {
             return Err(CompileError::Unbounded);
         }
         // An empty solid is asked nothing.
-        if bounds.is_bounded() {
+        if reach.is_bounded() {
             let leaves = self.boxes.iter().zip(&self.conditions);
             let extents: Vec<Extent> =
-                leaves.map(|(leaf, &c)| Extent::new(leaf, &bounds, c)).collect();
+                leaves.map(|(leaf, &c)| Extent::new(leaf, &reach, c)).collect();
             intern(&mut self.shapes, &extents);
         }
+        let cutters: Vec<(u32, Aabb)> = self
+            .literals
+            .iter()
+            .zip(self.shapes.iter().zip(&self.boxes))
+            .filter(|(literal, (shape, _))| {
+                literal.complement && shape.fills_its_bounds()
+            })
+            .map(|(literal, (_, leaf))| (literal.parent, *leaf))
+            .collect();
+        let bounds = self.program.bounds(&self.literals, &self.boxes, &cutters);
         let clipped: Vec<Aabb> =
-            self.boxes.iter().map(|b| b.intersection(bounds)).collect();
+            self.boxes.iter().map(|b| b.intersection(reach)).collect();
         let near = (0..).zip(&clipped).filter(|(_, b)| !b.is_empty()).map(|(i, _)| i);
         let hierarchy = Bvh::over(near.collect(), &clipped);
         Ok(Scene {
@@ -291,6 +323,7 @@ impl Compiler {
             shapes: self.shapes,
             parts: self.parts,
             places: self.places,
+            subtracted: self.subtracted,
             part_list: self.part_list,
             hierarchy,
         })

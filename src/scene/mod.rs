@@ -34,6 +34,8 @@ pub struct Scene {
     /// Which part each leaf belongs to.
     parts: Vec<u32>,
     places: Vec<Option<Place>>,
+    /// Which leaves take material away, as people see it.
+    subtracted: Vec<bool>,
     part_list: Vec<Part>,
     hierarchy: Bvh,
 }
@@ -54,7 +56,8 @@ pub struct Leaf<'a> {
     pub kind: &'static str,
     /// How many faces it has.
     pub faces: u32,
-    /// Whether it takes material away: it stands under an odd number of subtractions.
+    /// Whether it takes material away: it stands under an odd number of subtractions,
+    /// those within an outline not counted.
     pub subtracted: bool,
     /// The name and colour it was given.
     pub part: &'a Part,
@@ -123,7 +126,7 @@ impl Scene {
         Leaf {
             kind: self.shapes[i].kind(),
             faces: self.shapes[i].surface().faces(),
-            subtracted: self.literals[i].complement,
+            subtracted: self.subtracted[i],
             part: &self.part_list[self.parts[i] as usize],
             place: self.places[i],
         }

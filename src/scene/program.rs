@@ -87,7 +87,15 @@ impl Program {
     }
 
     /// A box around where the root is true, from the boxes of the leaves.
-    pub(crate) fn bounds(&self, literals: &[Literal], leaves: &[Aabb]) -> Aabb {
+    ///
+    /// `cutters` are boxes that complements fill: a solid is smaller by what a box cuts off it
+    /// straight across. Without them the box holds whatever the complements are.
+    pub(crate) fn bounds(
+        &self,
+        literals: &[Literal],
+        leaves: &[Aabb],
+        cutters: &[(u32, Aabb)],
+    ) -> Aabb {
         let mut boxes: Vec<Aabb> = self
             .nodes
             .iter()
@@ -100,9 +108,18 @@ impl Program {
             let around = if literal.complement { Aabb::ALL } else { leaf };
             self.merge(&mut boxes, literal.parent, around);
         }
-        for i in (1..self.nodes.len()).rev() {
-            let around = boxes[i];
-            self.merge(&mut boxes, self.nodes[i].parent, around);
+        let mut cutters_of = vec![Vec::new(); self.nodes.len()];
+        for &(node, cutter) in cutters {
+            if self.nodes[node as usize].combine == Combine::All {
+                cutters_of[node as usize].push(cutter);
+            }
+        }
+        for i in (0..self.nodes.len()).rev() {
+            boxes[i] = boxes[i].trimmed(&cutters_of[i]);
+            if i > 0 {
+                let around = boxes[i];
+                self.merge(&mut boxes, self.nodes[i].parent, around);
+            }
         }
         boxes[0]
     }

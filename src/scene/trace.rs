@@ -76,7 +76,7 @@ impl<'a> Tracer<'a> {
     fn gather(&mut self, line: &Line) {
         let Self { scene, events, .. } = self;
         events.clear();
-        scene.hierarchy.crossed(&line.slabs(&scene.bounds), |leaf| {
+        scene.hierarchy.crossed(&line.slabs(&scene.hierarchy.bounds()), |leaf| {
             let surface = scene.shapes[leaf as usize].surface();
             surface.crossings(line, &mut Sink { events, leaf });
         });

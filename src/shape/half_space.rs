@@ -21,10 +21,9 @@ impl HalfSpace {
 
     /// Bounded on one side if the plane is square to an axis.
     pub(crate) fn bounds(&self) -> Aabb {
-        let [Plane { normal, offset, above }] = self.planes;
+        let [plane @ Plane { offset, above, .. }] = self.planes;
         let mut bounds = Aabb::ALL;
-        let others = |axis: usize| (1..3).all(|k| normal[(axis + k) % 3] == 0.0);
-        if let Some(axis) = (0..3).find(|&axis| others(axis)) {
+        if let Some(axis) = plane.axis() {
             let side = if above { &mut bounds.min } else { &mut bounds.max };
             side[axis] = offset;
         }

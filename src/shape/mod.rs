@@ -101,6 +101,14 @@ impl Shape {
         Ok(Placed { shape, bounds, condition: frame.condition() })
     }
 
+    /// Whether the leaf is all of its bounds: a box along the axes.
+    pub(crate) fn fills_its_bounds(&self) -> bool {
+        match self {
+            Self::Cuboid(leaf) => leaf.planes.iter().all(|plane| plane.axis().is_some()),
+            Self::HalfSpace(_) | Self::Polyhedron(_) | Self::Quadric(_) => false,
+        }
+    }
+
     /// The planes of the leaf.
     pub(crate) fn planes_mut(&mut self) -> &mut [Plane] {
         match self {

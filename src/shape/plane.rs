@@ -36,6 +36,11 @@ impl Plane {
         Self { normal, offset: normal.dot(frame.point(point)), above }
     }
 
+    /// The axis to which the plane is square, if it is.
+    pub(crate) fn axis(&self) -> Option<usize> {
+        (0..3).find(|axis| (1..3).all(|k| self.normal[(axis + k) % 3] == 0.0))
+    }
+
     /// The outward normal.
     pub(crate) fn outward(&self) -> DVec3 {
         if self.above { -self.normal } else { self.normal }

@@ -61,7 +61,7 @@ pub(super) fn linear_extrude(
     }
     let heights = if center { [-0.5 * height, 0.5 * height] } else { [0.0, height] };
     Ok(match combine::union(call, flat, reading)? {
-        Shape::Flat(prism) => Shape::Solid(lifted(prism, heights)),
+        Shape::Flat(prism) => Shape::Solid(lifted(prism, heights).as_outline()),
         Shape::Empty | Shape::Solid(_) => Shape::Empty,
     })
 }
