@@ -45,16 +45,6 @@ impl Look {
     /// All looks.
     pub const ALL: [Self; 4] = [Self::Shaded, Self::Normal, Self::Depth, Self::Leaf];
 
-    /// What the look is called on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Shaded => "shaded",
-            Self::Normal => "normal",
-            Self::Depth => "depth",
-            Self::Leaf => "leaf",
-        }
-    }
-
     /// The light, linear in sRGB's primaries, of a pixel in which a surface is seen.
     pub(super) fn paint(self, seen: &Seen) -> Vec3 {
         match self {
@@ -107,12 +97,5 @@ mod tests {
                 assert!(apart > 0.01, "leaves {i} and {j}");
             }
         }
-    }
-
-    #[test]
-    fn names_are_distinct() {
-        let mut names = Look::ALL.map(Look::name);
-        names.sort_unstable();
-        assert!(names.windows(2).all(|pair| pair[0] != pair[1]));
     }
 }

@@ -10,8 +10,9 @@
 //!
 //! # Adding a look
 //!
-//! A variant of [`Look`] and its place in [`Look::ALL`]; an arm in `Look::name`; an arm
-//! each in `Look::paint` and `Look::background`. All of them are in `look.rs`.
+//! In `look.rs` a variant of `Look`, its place in `Look::ALL`, and an arm each in
+//! `Look::paint` and `Look::background`; in the command line's `render.rs` a value of
+//! `LookArg` and its arm.
 
 mod camera;
 mod chunks;
