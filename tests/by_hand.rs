@@ -267,3 +267,25 @@ fn bounds_end_where_a_box_cuts_straight_across() {
         scene(&(cube(1.0) - half.translated(DVec3::splat(-4.0)))).bounds().is_empty()
     );
 }
+
+/// A line that comes out of the bounds through one cut and goes on into what the other has
+/// taken away, past the part of that one which borders on the bounds.
+#[test]
+fn what_cuts_the_bounds_is_found_by_lines_beside_them() {
+    let block = Solid::cuboid_between(DVec3::ZERO, DVec3::splat(10.0));
+    let right = Solid::cuboid_between(dvec3(5.0, -1.0, -1.0), DVec3::splat(11.0));
+    let top = Solid::cuboid_between(dvec3(-1.0, 4.0, -1.0), dvec3(5.0, 11.0, 11.0));
+    // Enough leaves beside the cut that not all of them are asked about every line.
+    let dots = (0..40).map(|i| {
+        Solid::ball(0.05).translated(dvec3(
+            4.9,
+            0.5 + 0.7 * f64::from(i % 5),
+            1.0 + f64::from(i / 5),
+        ))
+    });
+    let solid = dots.fold(block - right - top, |solid, dot| solid - dot);
+    let bounds = scene(&solid).bounds();
+    assert_eq!((bounds.min, bounds.max), (DVec3::ZERO, dvec3(5.0, 4.0, 10.0)));
+    let ray = Ray::new(dvec3(2.0, 0.0, 5.0), dvec3(0.5, 1.0, 0.0));
+    assert_eq!(ends(&solid, &ray), [[0.0, 4.0]]);
+}
