@@ -255,3 +255,38 @@ fn directions_may_be_as_long_or_short_as_they_like() {
         assert_at(&list, exact, length, 22.0, &format!("{length:e}"));
     }
 }
+
+/// Sizes by parameters or by a map, alone and in a scene 1e200 times as large.
+#[test]
+fn solids_may_be_as_long_or_short_as_they_like() {
+    let kinds = |size: f64| {
+        [
+            Solid::ball(size),
+            Solid::cylinder(size, size),
+            Solid::frustum(size, 0.0, size),
+            Solid::paraboloid(size, size),
+            Solid::hyperboloid_of_one_sheet(0.5 * size, size, 2.0 * size),
+            Solid::hyperboloid_of_two_sheets(0.25 * size, 1.0, 3.0 * size),
+            Solid::cuboid(DVec3::splat(2.0 * size)),
+        ]
+    };
+    for (i, plain) in kinds(1.0).into_iter().enumerate() {
+        let ray = Ray::new(dvec3(-5.0, 0.125, 0.0625), dvec3(1.0, 0.03125, 0.125));
+        let exact = ends(&plain, &ray);
+        assert!(!exact.is_empty(), "{i}");
+        for power in [-400, -333, 333, 400] {
+            let size = 2.0_f64.powi(power);
+            let map = DAffine3::from_scale(DVec3::splat(size));
+            let there = Ray::new(size * ray.origin, ray.dir);
+            let scaled: Vec<_> =
+                exact.iter().map(|span| span.map(|t| t * size)).collect();
+            assert_eq!(ends(&plain.clone().mapped(map), &there), scaled, "{i}");
+            assert_eq!(ends(&kinds(size)[i], &there), scaled, "{i}");
+            // One is a speck on the other.
+            let both = scene(&(kinds(size)[i].clone() + plain.clone()));
+            let list =
+                ends_in(&both, &Ray::new(DVec3::splat(-9.0 * size.max(1.0)), DVec3::ONE));
+            assert!(list.iter().flatten().all(|t| t.is_finite()), "{i}: {list:?}");
+        }
+    }
+}

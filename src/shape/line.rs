@@ -7,7 +7,7 @@ use crate::bvh::Slabs;
 use crate::ray::Ray;
 
 /// A line in the frame in which leaves compute: its origin is near the scene and its
-/// direction near unit length.
+/// direction about as long as the scene is large, so that `t` is about 1.
 ///
 /// The origin is about the middle of the stretch inside the scene's bounds, so that no leaf sees
 /// an origin farther away than the scene is large: the error of a crossing grows with that
@@ -20,7 +20,8 @@ use crate::ray::Ray;
 pub(crate) struct Line {
     /// The point at `t = 0` of this line.
     pub(crate) origin: DVec3,
-    /// The direction; its largest component is in 1..2 for all but denormal directions.
+    /// The direction; its largest component is between a half and twice the size of the scene
+    /// for all but denormal directions.
     pub(crate) dir: DVec3,
     /// Where the origin is on the ray, in multiples of `dir`.
     offset: f64,
@@ -35,7 +36,12 @@ impl Line {
             return None;
         }
         let scale = inverse_power_of_two(ray.dir.abs().max_element());
-        let dir = ray.dir * scale;
+        let size = 1.0 / inverse_power_of_two(bounds.size().max_element());
+        // One factor after the other: their product need not be a number.
+        let (dir, scale) = (ray.dir * scale * size, scale * size);
+        if !scale.is_normal() {
+            return None;
+        }
         let [near, far] = Slabs::new(ray.origin, dir, bounds).range(bounds);
         // A range that is not finite belongs to a line too far away to be told apart.
         if near > far || !near.is_finite() || !far.is_finite() {

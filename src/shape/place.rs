@@ -73,7 +73,13 @@ impl Frame {
 
     /// The way into the local frame.
     pub(crate) fn to_local(self) -> ToLocal {
-        ToLocal { origin: self.world_from_local.translation, linear: self.inverse }
+        self.to_local_in_units_of(1.0)
+    }
+
+    /// The way into the local frame, where lengths are counted in a power of two.
+    pub(crate) fn to_local_in_units_of(self, unit: f64) -> ToLocal {
+        let linear = self.inverse * (1.0 / unit);
+        ToLocal { origin: self.world_from_local.translation, linear }
     }
 }
 

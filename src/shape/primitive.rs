@@ -151,6 +151,22 @@ impl Profile {
         }
     }
 
+    /// The same solid in units of `unit`.
+    pub(crate) fn in_units_of(&self, unit: f64) -> Self {
+        match *self {
+            Self::Ball { radius } => Self::Ball { radius: radius / unit },
+            Self::Cylinder { radius } => Self::Cylinder { radius: radius / unit },
+            Self::Cone { radius, slope } => Self::Cone { radius: radius / unit, slope },
+            Self::Paraboloid { scale } => Self::Paraboloid { scale: scale / unit },
+            Self::OneSheet { waist, slope } => {
+                Self::OneSheet { waist: waist / unit, slope }
+            }
+            Self::TwoSheets { vertex, slope } => {
+                Self::TwoSheets { vertex: vertex / unit, slope }
+            }
+        }
+    }
+
     fn check(&self, bottom: f64, top: f64) -> Result<(), BadParameter> {
         match *self {
             Self::Ball { radius } | Self::Cylinder { radius } => size("radius", radius),
@@ -179,9 +195,8 @@ fn finite(parameter: &'static str, value: f64) -> Result<(), BadParameter> {
     if value.is_finite() { Ok(()) } else { Err(BadParameter { parameter, value }) }
 }
 
-/// The smallest and the largest size of a quadric: their squares, and products of a few
-/// such, are numbers still.
-const SIZES: std::ops::RangeInclusive<f64> = 1e-75..=1e75;
+/// The smallest and the largest size of a quadric: their squares are numbers still.
+const SIZES: std::ops::RangeInclusive<f64> = 1e-140..=1e140;
 
 /// A size of a quadric.
 fn size(parameter: &'static str, value: f64) -> Result<(), BadParameter> {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::line::inverse_power_of_two;
 use super::place::Frame;
 use super::plane::Plane;
 use super::primitive::Profile;
@@ -18,6 +19,8 @@ pub(crate) struct Quadric {
 }
 
 impl Quadric {
+    /// The wall is kept in units of about its largest radius, a power of two, so that no
+    /// square of a length is too large or too small to be a number.
     pub(crate) fn new(frame: &Frame, profile: Profile, bottom: f64, top: f64) -> Self {
         let whole = matches!(profile, Profile::Ball { radius } if bottom <= -radius && top >= radius);
         let planes = (!whole).then(|| {
@@ -27,7 +30,11 @@ impl Quadric {
             ]
         });
         let (bottom, top) = profile.extent(bottom, top);
-        Self { wall: Wall::new(profile, frame.to_local(), [bottom, top]), planes }
+        let unit = 1.0 / inverse_power_of_two(profile.largest_radius(bottom, top));
+        let ends = [bottom / unit, top / unit];
+        let wall =
+            Wall::new(profile.in_units_of(unit), frame.to_local_in_units_of(unit), ends);
+        Self { wall, planes }
     }
 
     pub(crate) fn bounds(frame: &Frame, profile: Profile, bottom: f64, top: f64) -> Aabb {

@@ -16,6 +16,7 @@
 use glam::{DMat3, DVec3};
 
 use super::Line;
+use super::line::inverse_power_of_two;
 use super::place::ToLocal;
 use super::primitive::Profile;
 
@@ -55,6 +56,9 @@ impl Wall {
     pub(crate) fn inside(&self, line: &Line) -> [Option<[f64; 2]>; 2] {
         let origin = self.to_local.point(line.origin);
         let dir = self.to_local.direction(line.dir);
+        // Where the scene is far larger than the leaf, squares of steps are no numbers.
+        let step = inverse_power_of_two(dir.abs().max_element());
+        let dir = dir * step;
         let a = self.profile.quadratic(dir);
         let mut moved = self.closest_approach(origin, dir, a);
         let mut p = origin + moved * dir;
@@ -68,7 +72,7 @@ impl Wall {
         let c = self.profile.value(p);
         let all = Some([f64::NEG_INFINITY, f64::INFINITY]);
         if a == 0.0 {
-            let root = moved - 0.5 * c / b;
+            let root = (moved - 0.5 * c / b) * step;
             return if b > 0.0 {
                 [Some([f64::NEG_INFINITY, root]), None]
             } else if b < 0.0 {
@@ -87,7 +91,7 @@ impl Wall {
         // formula, so that the reversed line gives the same bits.
         let (first, second) =
             if b == 0.0 { (-root / a, root / a) } else { (q / a, c / q) };
-        let (first, second) = (moved + first, moved + second);
+        let (first, second) = ((moved + first) * step, (moved + second) * step);
         let (first, second) = (first.min(second), first.max(second));
         if a > 0.0 {
             [Some([first, second]), None]
