@@ -18,9 +18,9 @@ impl Cuboid {
         let planes = std::array::from_fn(|face| {
             let axis = DVec3::AXES[face / 2];
             if face % 2 == 0 {
-                Plane::new(frame, -axis, axis * min)
+                Plane::new(frame, -axis, -min[face / 2], axis * min)
             } else {
-                Plane::new(frame, axis, axis * max)
+                Plane::new(frame, axis, max[face / 2], axis * max)
             }
         });
         Self { planes }

@@ -16,7 +16,7 @@ pub(crate) struct HalfSpace {
 impl HalfSpace {
     pub(crate) fn new(frame: &Frame, normal: DVec3, offset: f64) -> Self {
         let foot = normal * (offset / normal.length_squared());
-        Self { planes: [Plane::new(frame, normal, foot)] }
+        Self { planes: [Plane::new(frame, normal, offset, foot)] }
     }
 
     /// Bounded on one side if the plane is square to an axis.

@@ -34,6 +34,11 @@ impl Frame {
         norm(&self.world_from_local.matrix3) * norm(&self.inverse) / 3.0
     }
 
+    /// The local origin in the world.
+    pub(crate) fn origin(&self) -> DVec3 {
+        self.world_from_local.translation
+    }
+
     /// A local point in the world.
     pub(crate) fn point(&self, local: DVec3) -> DVec3 {
         self.world_from_local.transform_point3(local)

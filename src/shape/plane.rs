@@ -23,17 +23,27 @@ pub(crate) struct Stretch {
 }
 
 impl Plane {
-    /// The inner side of the plane through a local point with a local outward normal.
+    /// The inner side of a plane of a leaf: `outward · p = offset` in the leaf's frame, where
+    /// `point` is a point on it.
     ///
     /// The normal is divided by its largest component and its first component that is not
-    /// zero is positive: one form for each direction, exact for directions along an axis.
-    pub(crate) fn new(frame: &Frame, outward: DVec3, point: DVec3) -> Self {
+    /// zero is positive: one form for each direction, exact for directions along an axis and
+    /// for those to which small whole numbers in front of a power of two belong. So is the
+    /// offset: taken from the point where that is one coordinate of it, and where it is not
+    /// from the local offset, which the foot of an oblique plane has not got exactly.
+    pub(crate) fn new(frame: &Frame, outward: DVec3, offset: f64, point: DVec3) -> Self {
         let normal = frame.normal(outward);
-        let scaled = normal / normal.abs().max_element();
+        let size = normal.abs().max_element();
+        let scaled = normal / size;
         let first = scaled.to_array().into_iter().find(|&c| c != 0.0).unwrap_or(1.0);
         let above = first < 0.0;
-        let normal = if above { -scaled } else { scaled };
-        Self { normal, offset: normal.dot(frame.point(point)), above }
+        let sign = if above { -1.0 } else { 1.0 };
+        let mut plane = Self { normal: sign * scaled, offset: 0.0, above };
+        plane.offset = match plane.axis() {
+            Some(axis) => frame.point(point)[axis],
+            None => sign * (offset / size) + plane.normal.dot(frame.origin()),
+        };
+        plane
     }
 
     /// The axis to which the plane is square, if it is.

@@ -25,8 +25,8 @@ impl Quadric {
         let whole = matches!(profile, Profile::Ball { radius } if bottom <= -radius && top >= radius);
         let planes = (!whole).then(|| {
             [
-                Plane::new(frame, -DVec3::Z, DVec3::Z * bottom),
-                Plane::new(frame, DVec3::Z, DVec3::Z * top),
+                Plane::new(frame, -DVec3::Z, -bottom, DVec3::Z * bottom),
+                Plane::new(frame, DVec3::Z, top, DVec3::Z * top),
             ]
         });
         let (bottom, top) = profile.extent(bottom, top);
