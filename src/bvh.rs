@@ -122,6 +122,26 @@ impl Bvh {
             at = later[waiting];
         }
     }
+
+    /// Calls `visit` with each item at an end whose box touches a box.
+    pub(crate) fn around(&self, place: &Aabb, mut visit: impl FnMut(u32)) {
+        if self.items.is_empty() {
+            return;
+        }
+        let mut later = vec![0_u32];
+        while let Some(at) = later.pop() {
+            let Node { bounds, first, count } = &self.nodes[at as usize];
+            if bounds.intersection(*place).is_empty() {
+                continue;
+            }
+            if *count > 0 {
+                let (first, count) = (*first as usize, *count as usize);
+                self.items[first..][..count].iter().for_each(|&i| visit(i));
+            } else {
+                later.extend([*first, first + 1]);
+            }
+        }
+    }
 }
 
 fn node(items: &[u32], bounds: &[Aabb], range: Range<usize>) -> Node {

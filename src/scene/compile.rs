@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::DAffine3;
 use thiserror::Error;
 
 use super::intern::{Extent, intern};
@@ -14,7 +13,7 @@ use crate::bvh::Bvh;
 use crate::color::Color;
 use crate::mesh::Mesh;
 use crate::op::Op;
-use crate::shape::{BadParameter, IndexedMesh, Placed, Primitive, Shape};
+use crate::shape::{BadParameter, Chain, IndexedMesh, Placed, Primitive, Shape, Slack};
 use crate::solid::{Kind, Place, Solid, Tag};
 
 /// Why a solid cannot be compiled.
@@ -84,7 +83,7 @@ impl std::fmt::Display for LeafName {
 /// What a subtree inherits from the maps and tags above it.
 #[derive(Clone)]
 struct Context {
-    map: DAffine3,
+    chain: Chain,
     name: Option<Arc<str>>,
     color: Option<Color>,
     place: Option<Place>,
@@ -110,6 +109,7 @@ struct Compiler {
     subtracted: Vec<bool>,
     boxes: Vec<Aabb>,
     conditions: Vec<f64>,
+    slacks: Vec<Slack>,
     part_list: Vec<Part>,
     part_numbers: HashMap<PartKey, u32>,
     meshes: HashMap<*const Mesh, Arc<IndexedMesh>>,
@@ -132,12 +132,13 @@ pub(super) fn compile(solid: &Solid) -> Result<Scene, CompileError> {
         subtracted: Vec::new(),
         boxes: Vec::new(),
         conditions: Vec::new(),
+        slacks: Vec::new(),
         part_list: Vec::new(),
         part_numbers: HashMap::new(),
         meshes: HashMap::new(),
     };
     let mut contexts = vec![Context {
-        map: DAffine3::IDENTITY,
+        chain: Chain::NOTHING,
         name: None,
         color: None,
         place: None,
@@ -197,7 +198,7 @@ impl Context {
     fn inside(&self, kind: &Kind, complement: bool) -> Self {
         let mut inner = self.clone();
         match kind {
-            Kind::Mapped(map) => inner.map = self.map * **map,
+            Kind::Mapped(map) => inner.chain = self.chain.then(map),
             Kind::Tagged(Tag::Name(name)) => inner.name = Some(name.clone()),
             Kind::Tagged(Tag::Color(color)) => inner.color = inner.color.or(Some(*color)),
             Kind::Tagged(Tag::Place(place)) => inner.place = Some(*place),
@@ -221,7 +222,7 @@ impl Compiler {
         primitive.check().map_err(|BadParameter { parameter, value }| {
             CompileError::BadParameter { leaf: leaf(), parameter, value }
         })?;
-        let placed = Shape::place(primitive, context.map);
+        let placed = Shape::place(primitive, &context.chain);
         let placed = placed.map_err(|determinant| CompileError::SingularMap {
             leaf: leaf(),
             determinant,
@@ -240,18 +241,19 @@ impl Compiler {
             .entry(Arc::as_ptr(mesh))
             .or_insert_with(|| Arc::new(IndexedMesh::new(mesh.clone())))
             .clone();
-        let placed = Shape::place_mesh(indexed, context.map).map_err(|determinant| {
-            CompileError::SingularMap {
-                leaf: self.leaf_name("mesh", context),
-                determinant,
-            }
-        })?;
+        let placed =
+            Shape::place_mesh(indexed, &context.chain).map_err(|determinant| {
+                CompileError::SingularMap {
+                    leaf: self.leaf_name("mesh", context),
+                    determinant,
+                }
+            })?;
         self.add_leaf(placed, task, context)
     }
 
     fn add_leaf(
         &mut self,
-        Placed { shape, bounds, condition }: Placed,
+        Placed { shape, bounds, condition, slack }: Placed,
         task: &Task<'_>,
         context: &Context,
     ) -> Result<(), CompileError> {
@@ -263,6 +265,7 @@ impl Compiler {
         self.shapes.push(shape);
         self.boxes.push(bounds);
         self.conditions.push(condition);
+        self.slacks.push(slack);
         self.places.push(context.place);
         self.subtracted.push(context.subtracted.unwrap_or(task.complement));
         let part = self.part(context);
@@ -315,8 +318,10 @@ impl Compiler {
             self.boxes.iter().map(|b| b.intersection(reach)).collect();
         let near = (0..).zip(&clipped).filter(|(_, b)| !b.is_empty()).map(|(i, _)| i);
         let hierarchy = Bvh::over(near.collect(), &clipped);
+        let slacks = self.slacks.iter().map(|slack| slack.within(&reach)).collect();
         Ok(Scene {
             bounds,
+            slacks,
             far_away: self.program.counts_far_away(&self.literals),
             program: self.program,
             literals: self.literals,

@@ -13,7 +13,7 @@ use crate::aabb::Aabb;
 use crate::bvh::Bvh;
 use crate::color::Color;
 use crate::ray::{Crossing, Ray, Sense};
-use crate::shape::Shape;
+use crate::shape::{Line, Shape, Spot};
 use crate::solid::{Place, Solid};
 pub use compile::{CompileError, LeafName};
 use program::{Literal, Program};
@@ -31,6 +31,8 @@ pub struct Scene {
     far_away: Vec<u32>,
     literals: Vec<Literal>,
     shapes: Vec<Shape>,
+    /// At most how far the surfaces of each leaf lie beside those that were said.
+    slacks: Vec<f64>,
     /// Which part each leaf belongs to.
     parts: Vec<u32>,
     places: Vec<Option<Place>>,
@@ -104,6 +106,26 @@ impl Scene {
         let unit = outward.normalize_or(ray.dir.normalize_or(DVec3::Z));
         let against = unit.dot(ray.dir) <= 0.0;
         if against == (sense == Sense::Enter) { unit } else { -unit }
+    }
+
+    /// At most how far, in multiples of the ray's direction, the `t` of a crossing of this
+    /// ray is from that of the solid as it was said: sizes and maps taken for exact numbers, the
+    /// maps multiplied out without rounding.
+    ///
+    /// Where the ray comes to an edge of a leaf, the bound is that of the worst face there;
+    /// where it grazes a curved face, it is of the order of the root of the rounding. It is infinite
+    /// where a ray within rounding of a plane runs along it.
+    ///
+    /// The bound is of the leaf's own crossing. A ray that runs within rounding of a face
+    /// without crossing it, or two faces of different leaves that are as near to each other,
+    /// can make a span appear or vanish.
+    pub fn error_at(&self, ray: &Ray, crossing: &Crossing) -> f64 {
+        let Some(line) = Line::new(ray, &self.bounds) else { return f64::INFINITY };
+        let t = line.from_ray(crossing.t);
+        let slack = self.slacks[crossing.leaf as usize];
+        let surface = self.shapes[crossing.leaf as usize].surface();
+        let error = surface.error(&Spot { line: &line, t, slack }, crossing.face);
+        line.error_on_ray(t, error)
     }
 
     /// How many leaves there are.

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::doubt::{Local, Spot};
 use super::place::Frame;
 use super::plane::Plane;
 use super::{Line, Sink, Surface};
@@ -39,6 +40,10 @@ impl Surface for Cuboid {
 
     fn normal(&self, _point: DVec3, face: u32) -> DVec3 {
         self.planes[face as usize % 6].outward()
+    }
+
+    fn local(&self, spot: &Spot<'_>, face: u32) -> Local {
+        self.planes[face as usize % 6].local(spot)
     }
 
     fn faces(&self) -> u32 {

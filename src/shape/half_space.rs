@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::doubt::{Local, Spot};
 use super::place::Frame;
 use super::plane::Plane;
 use super::{Line, Sink, Surface};
@@ -39,6 +40,10 @@ impl Surface for HalfSpace {
 
     fn normal(&self, _point: DVec3, _face: u32) -> DVec3 {
         self.planes[0].outward()
+    }
+
+    fn local(&self, spot: &Spot<'_>, _face: u32) -> Local {
+        self.planes[0].local(spot)
     }
 
     fn faces(&self) -> u32 {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::doubt::U;
 use crate::aabb::Aabb;
 use crate::bvh::Slabs;
 use crate::ray::Ray;
@@ -54,6 +55,21 @@ impl Line {
     /// A place on this line as a place on the ray.
     pub(crate) fn on_ray(&self, t: f64) -> f64 {
         (self.offset + t) * self.scale
+    }
+
+    /// A place on the ray as a place on this line.
+    pub(crate) fn from_ray(&self, t: f64) -> f64 {
+        t / self.scale - self.offset
+    }
+
+    /// At most how far the true origin of the line is from this one, on each axis.
+    pub(super) fn rounding(&self) -> DVec3 {
+        U * ((self.offset * self.dir).abs() + self.origin.abs())
+    }
+
+    /// A bound for a place `t` on this line as a bound for it on the ray.
+    pub(crate) fn error_on_ray(&self, t: f64, error: f64) -> f64 {
+        (error + 4.0 * U * (self.offset.abs() + t.abs())) * self.scale
     }
 
     /// Box tests along this line.

@@ -8,7 +8,9 @@
 //! 4. give it a maker in `solid.rs`;
 //! 5. and a keyword in the reader, if a format has one.
 
+mod chain;
 mod cuboid;
+mod doubt;
 mod half_space;
 mod line;
 mod place;
@@ -20,11 +22,13 @@ mod wall;
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 
 use crate::aabb::Aabb;
 use crate::ray::Sense;
+pub(crate) use chain::Chain;
 use cuboid::Cuboid;
+pub(crate) use doubt::{Local, Spot};
 use half_space::HalfSpace;
 pub(crate) use line::Line;
 use place::Frame;
@@ -45,8 +49,33 @@ pub(crate) trait Surface {
     /// A normal of any length, outward, on a face at a point.
     fn normal(&self, point: DVec3, face: u32) -> DVec3;
 
+    /// The equation of a face at a place on a line.
+    fn local(&self, spot: &Spot<'_>, face: u32) -> Local;
+
     /// How many faces there are.
     fn faces(&self) -> u32;
+
+    /// Calls `visit` with the faces that the place may be on; with none where it is outside of
+    /// another one.
+    ///
+    /// As it stands here this is right for leaves that are on the inner side of all their
+    /// faces.
+    fn near(&self, spot: &Spot<'_>, visit: &mut dyn FnMut(u32, &Local)) {
+        let faces = || (0..self.faces()).map(|face| (face, self.local(spot, face)));
+        if faces().any(|(_, local)| local.is_outside()) {
+            return;
+        }
+        faces()
+            .filter(|(_, local)| local.is_near())
+            .for_each(|(f, local)| visit(f, &local));
+    }
+
+    /// At most how far along the line the true crossing is from one that was found on a face.
+    fn error(&self, spot: &Spot<'_>, face: u32) -> f64 {
+        let mut error = self.local(spot, face).reach();
+        self.near(spot, &mut |_, local| error = error.max(local.reach()));
+        error
+    }
 }
 
 /// A placed leaf: the closed list of what there is.
@@ -66,39 +95,75 @@ pub(crate) struct Placed {
     pub(crate) bounds: Aabb,
     /// The condition number of its map.
     pub(crate) condition: f64,
+    pub(crate) slack: Slack,
+}
+
+/// At most how far the surfaces of a leaf, as they are kept, lie beside those that were said.
+#[derive(Clone, Debug)]
+pub(crate) enum Slack {
+    /// Anywhere on the leaf.
+    Bounded(f64),
+    /// It depends on how much of a half-space is wanted.
+    Unbounded(Box<(Frame, Chain)>),
+}
+
+impl Slack {
+    /// Of a leaf with no point farther than this from its own origin.
+    fn of(frame: &Frame, chain: &Chain, radius: f64) -> Self {
+        Self::Bounded(chain.error(radius) + frame.slack(radius))
+    }
+
+    /// The same for what is within a box.
+    pub(crate) fn within(&self, reach: &Aabb) -> f64 {
+        match self {
+            Self::Bounded(slack) => *slack,
+            Self::Unbounded(map) => {
+                let (frame, chain) = &**map;
+                // An oblique normal is rounded on its way into the world.
+                let rounds = 16.0 * frame.condition();
+                let radius = frame.radius_of(reach);
+                chain.error(radius) + rounds * frame.slack(radius)
+            }
+        }
+    }
 }
 
 impl Shape {
     /// A primitive under a map; or the determinant of a map that cannot be inverted.
-    pub(crate) fn place(primitive: &Primitive, map: DAffine3) -> Result<Placed, f64> {
-        let frame = Frame::new(map)?;
-        let (shape, bounds) = match *primitive {
+    pub(crate) fn place(primitive: &Primitive, chain: &Chain) -> Result<Placed, f64> {
+        let frame = Frame::new(chain.map)?;
+        let slack = |radius| Slack::of(&frame, chain, radius);
+        let (shape, bounds, slack) = match *primitive {
             Primitive::Cuboid { min, max } => (
                 Self::Cuboid(Cuboid::new(&frame, min, max)),
                 Cuboid::bounds(&frame, min, max),
+                slack(min.abs().max(max.abs()).length()),
             ),
             Primitive::Quadric { profile, bottom, top } => (
                 Self::Quadric(Quadric::new(&frame, profile, bottom, top)),
                 Quadric::bounds(&frame, profile, bottom, top),
+                slack(Quadric::radius(profile, bottom, top)),
             ),
             Primitive::HalfSpace { normal, offset } => {
                 let leaf = HalfSpace::new(&frame, normal, offset);
                 let bounds = leaf.bounds();
-                (Self::HalfSpace(leaf), bounds)
+                let slack = Slack::Unbounded(Box::new((frame, *chain)));
+                (Self::HalfSpace(leaf), bounds, slack)
             }
         };
-        Ok(Placed { shape, bounds, condition: frame.condition() })
+        Ok(Placed { shape, bounds, condition: frame.condition(), slack })
     }
 
     /// A mesh under a map; or the determinant of a map that cannot be inverted.
     pub(crate) fn place_mesh(
         mesh: Arc<IndexedMesh>,
-        map: DAffine3,
+        chain: &Chain,
     ) -> Result<Placed, f64> {
-        let frame = Frame::new(map)?;
+        let frame = Frame::new(chain.map)?;
         let bounds = Polyhedron::bounds(&frame, &mesh);
+        let slack = Slack::of(&frame, chain, mesh.radius());
         let shape = Self::Polyhedron(Polyhedron::new(&frame, mesh));
-        Ok(Placed { shape, bounds, condition: frame.condition() })
+        Ok(Placed { shape, bounds, condition: frame.condition(), slack })
     }
 
     /// Whether the leaf is all of its bounds: a box along the axes.

@@ -2,6 +2,8 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::chain::norm;
+use super::doubt::U;
 use crate::aabb::Aabb;
 
 /// The affine map of a leaf and its inverse.
@@ -29,9 +31,30 @@ impl Frame {
     /// The condition number of the linear part, from its Frobenius norm and that of its
     /// inverse: 1 for rotations and uniform scales.
     pub(crate) fn condition(&self) -> f64 {
-        let norm =
-            |m: &DMat3| m.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
         norm(&self.world_from_local.matrix3) * norm(&self.inverse) / 3.0
+    }
+
+    /// At most how far in the world the surfaces of a leaf, as they are kept, lie beside those that this
+    /// map makes of it. No point of the leaf is farther than `radius` from the local origin.
+    ///
+    /// With `X` for the rounded inverse of `M` and `w = M p`, a surface `f(M⁻¹ w) = 0` is
+    /// kept as `f(X w) = 0`: it is moved by `(I − M X) w`. The residual is computed, its own
+    /// rounding being at most 4 u |M| |X|. Then there are the roundings of planes and of sizes given
+    /// otherwise than they are kept: a few, each of at most u times a length at hand, for
+    /// which 32 leaves room.
+    pub(crate) fn slack(&self, radius: f64) -> f64 {
+        let (m, x) = (self.world_from_local.matrix3, self.inverse);
+        let residual =
+            norm(&(DMat3::IDENTITY - m * x)) + 4.0 * U * norm(&(m.abs() * x.abs()));
+        let reach = norm(&m) * radius;
+        let far = self.world_from_local.translation.length() + reach;
+        residual * reach + 32.0 * U * far
+    }
+
+    /// The radius about the local origin of all that is within a box in the world.
+    pub(crate) fn radius_of(&self, world: &Aabb) -> f64 {
+        let away = world.center() - self.world_from_local.translation;
+        norm(&self.inverse) * (away.length() + 0.5 * world.size().length())
     }
 
     /// The local origin in the world.

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Line;
+use super::doubt::{Local, Spot, U};
 use super::place::Frame;
 
 /// One side of a plane: the points with `normal · p ≤ offset`, or `≥` if it is `above`.
@@ -54,6 +55,30 @@ impl Plane {
     /// The outward normal.
     pub(crate) fn outward(&self) -> DVec3 {
         if self.above { -self.normal } else { self.normal }
+    }
+
+    /// The equation of the plane at a place.
+    ///
+    /// The distance is a sum of four products of coordinates, and so is the speed, each
+    /// rounded by at most 4 u times the sum of their absolute values.
+    pub(super) fn local(&self, spot: &Spot<'_>) -> Local {
+        let Spot { line, t, slack } = *spot;
+        let (size, sign) = (self.normal.abs(), if self.above { -1.0 } else { 1.0 });
+        let slope = self.normal.dot(line.dir);
+        let slope_rounding = 4.0 * U * size.dot(line.dir.abs());
+        let value = (self.normal.dot(line.origin) - self.offset) + t * slope;
+        let rounding = slack * self.normal.length()
+            + size.dot(line.rounding() + 4.0 * U * line.origin.abs())
+            + 4.0 * U * self.offset.abs()
+            + t.abs() * slope_rounding;
+        Local {
+            value: sign * value,
+            rounding,
+            slope: sign * slope,
+            slope_rounding,
+            bend: 0.0,
+            bend_rounding: 0.0,
+        }
     }
 
     /// From where to where a line is inside: half of it, all or nothing.

@@ -19,6 +19,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
 
+use super::doubt::{Local, Spot, U};
 use super::line::inverse_power_of_two;
 use super::place::{Frame, ToLocal};
 use super::{Line, Sink, Surface};
@@ -45,6 +46,12 @@ impl IndexedMesh {
         let bounds = faces.bounds();
         let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
         Self { mesh, faces, scale: inverse_power_of_two(largest) }
+    }
+
+    /// No point is farther than this from the local origin.
+    pub(crate) fn radius(&self) -> f64 {
+        let bounds = self.faces.bounds();
+        bounds.min.abs().max(bounds.max.abs()).length()
     }
 }
 
@@ -88,9 +95,102 @@ impl Surface for Polyhedron {
         self.to_local.normal_to_world((b - a).cross(c - a))
     }
 
+    /// The plane of a triangle, its value not divided by the length of its normal.
+    ///
+    /// Beside what moves the point, corners are moved by the shear: by at most 10 u times
+    /// their distance from the line's origin. The normal is wrong by at most 16 u times the product
+    /// of two edges, and the place on the line, a mean of those of the corners, by at most 24 u times
+    /// their range for each unit in the ratio of the square of an edge, as seen along the line, to
+    /// the area: for needles that is not small.
+    fn local(&self, spot: &Spot<'_>, face: u32) -> Local {
+        let (origin, dir, moved) = self.seen_from(spot);
+        let [a, b, c] = self.mesh.mesh.corners(face as usize);
+        let (ab, ac) = (b - a, c - a);
+        let (normal, edge) = (ab.cross(ac), ab.length().max(ac.length()));
+        let far = [a, b, c].map(|p| (p - origin).abs().max_element());
+        let sheared = 10.0 * U * far.into_iter().fold(edge, f64::max);
+        let to_point = origin + spot.t * dir - a;
+        let slope = normal.dot(dir);
+        let normal_rounding = 16.0 * U * ab.length() * ac.length();
+        let rounding = normal.abs().dot(moved + DVec3::splat(sheared))
+            + normal_rounding * to_point.length()
+            + slope.abs() * self.mean_rounding([a, b, c], origin, dir);
+        Local {
+            value: normal.dot(to_point),
+            rounding,
+            slope,
+            slope_rounding: normal_rounding * dir.length(),
+            bend: 0.0,
+            bend_rounding: 0.0,
+        }
+    }
+
     fn faces(&self) -> u32 {
         u32::try_from(self.mesh.mesh.faces().len())
             .expect("a mesh has at most u32::MAX faces")
+    }
+
+    /// The faces in whose boxes the place is, give or take rounding, if it is near their planes.
+    fn near(&self, spot: &Spot<'_>, visit: &mut dyn FnMut(u32, &Local)) {
+        let (origin, dir, moved) = self.seen_from(spot);
+        let bounds = self.mesh.faces.bounds();
+        let far = bounds.min.abs().max(bounds.max.abs()).max(origin.abs());
+        let pad = 4.0 * (moved + DVec3::splat(20.0 * U * far.max_element()));
+        let point = origin + spot.t * dir;
+        self.mesh.faces.around(&Aabb::new(point - pad, point + pad), |face| {
+            let local = self.local(spot, face);
+            if local.is_near() {
+                visit(face, &local);
+            }
+        });
+    }
+
+    /// As for other leaves; but no crossing with a triangle is beyond its corners.
+    fn error(&self, spot: &Spot<'_>, face: u32) -> f64 {
+        let (origin, dir, moved) = self.seen_from(spot);
+        let steps = dir.length_squared();
+        let extent = |face: u32| {
+            let corners = self.mesh.mesh.corners(face as usize);
+            let away = corners.map(|p| ((p - origin).dot(dir) / steps - spot.t).abs());
+            away.into_iter().fold(4.0 * moved.length() / steps.sqrt(), f64::max)
+        };
+        let mut error = self.local(spot, face).reach().min(extent(face));
+        self.near(spot, &mut |face, local| {
+            error = error.max(local.reach().min(extent(face)));
+        });
+        error
+    }
+}
+
+impl Polyhedron {
+    /// A line in the frame of the mesh: its origin, its direction, and at most how far rounding has
+    /// moved its point at the spot on each axis.
+    fn seen_from(&self, spot: &Spot<'_>) -> (DVec3, DVec3, DVec3) {
+        let Spot { line, t, slack } = *spot;
+        let away = line.origin - self.to_local.origin;
+        let moved = self.to_local.linear.abs()
+            * (line.rounding()
+                + DVec3::splat(slack)
+                + 5.0 * U * away.abs()
+                + 4.0 * U * t.abs() * line.dir.abs());
+        (self.to_local.point(line.origin), self.to_local.direction(line.dir), moved)
+    }
+
+    /// At most how wrong the mean of the places of three corners on a line is by its weights.
+    fn mean_rounding(&self, corners: [DVec3; 3], origin: DVec3, dir: DVec3) -> f64 {
+        let scale = self.mesh.scale;
+        let shear = Shear::new(scale * origin, scale * dir, DVec3::AXES);
+        let [a, b, c] = corners.map(|p| shear.map(scale * p));
+        let (low, high) =
+            (a.along.min(b.along).min(c.along), a.along.max(b.along).max(c.along));
+        let (ab, ac) = (b.beside - a.beside, c.beside - a.beside);
+        let area = ab.perp_dot(ac).abs();
+        let edges = ab.length_squared().max(ac.length_squared());
+        if area > 0.0 {
+            (high - low) * (24.0 * U * edges / area).min(1.0)
+        } else {
+            high - low
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::doubt::{Local, Spot};
 use super::line::inverse_power_of_two;
 use super::place::Frame;
 use super::plane::Plane;
@@ -59,6 +60,12 @@ impl Quadric {
         }
     }
 
+    /// No point is farther than this from the local origin.
+    pub(crate) fn radius(profile: Profile, bottom: f64, top: f64) -> f64 {
+        let (bottom, top) = profile.extent(bottom, top);
+        profile.largest_radius(bottom, top).hypot(bottom.abs().max(top.abs()))
+    }
+
     pub(crate) fn kind(&self) -> &'static str {
         self.wall.profile.name()
     }
@@ -84,6 +91,13 @@ impl Surface for Quadric {
         match &self.planes {
             Some(planes) if face > 0 => planes[(face as usize - 1) % 2].outward(),
             _ => self.wall.normal(point),
+        }
+    }
+
+    fn local(&self, spot: &Spot<'_>, face: u32) -> Local {
+        match &self.planes {
+            Some(planes) if face > 0 => planes[(face as usize - 1) % 2].local(spot),
+            _ => self.wall.local(spot),
         }
     }
 

@@ -16,6 +16,7 @@
 use glam::{DMat3, DVec3};
 
 use super::Line;
+use super::doubt::{Local, Spot, U};
 use super::line::inverse_power_of_two;
 use super::place::ToLocal;
 use super::primitive::Profile;
@@ -54,21 +55,7 @@ impl Wall {
 
     /// Where `q ≤ 0` on a line: one or two stretches, perhaps infinite.
     pub(crate) fn inside(&self, line: &Line) -> [Option<[f64; 2]>; 2] {
-        let origin = self.to_local.point(line.origin);
-        let dir = self.to_local.direction(line.dir);
-        // Where the scene is far larger than the leaf, squares of steps are no numbers.
-        let step = inverse_power_of_two(dir.abs().max_element());
-        let dir = dir * step;
-        let a = self.profile.quadratic(dir);
-        let mut moved = self.closest_approach(origin, dir, a);
-        let mut p = origin + moved * dir;
-        let mut b = self.profile.linear(p, dir);
-        let to_vertex = -b / a;
-        if self.is_near(to_vertex, dir) {
-            p += to_vertex * dir;
-            moved += to_vertex;
-            b = self.profile.linear(p, dir);
-        }
+        let Approach { step, moved, p, a, b, .. } = self.approach(line);
         let c = self.profile.value(p);
         let all = Some([f64::NEG_INFINITY, f64::INFINITY]);
         if a == 0.0 {
@@ -99,9 +86,91 @@ impl Wall {
             [Some([f64::NEG_INFINITY, first]), Some([second, f64::INFINITY])]
         }
     }
+
+    /// Moves the origin of a line to where the roots are best found.
+    fn approach(&self, line: &Line) -> Approach {
+        let origin = self.to_local.point(line.origin);
+        let dir = self.to_local.direction(line.dir);
+        // Where the scene is far larger than the leaf, squares of steps are no numbers.
+        let step = inverse_power_of_two(dir.abs().max_element());
+        let dir = dir * step;
+        let a = self.profile.quadratic(dir);
+        let mut moved = self.closest_approach(origin, dir, a);
+        let mut way = moved.abs();
+        let mut p = origin + moved * dir;
+        let mut b = self.profile.linear(p, dir);
+        let to_vertex = -b / a;
+        if self.is_near(to_vertex, dir) {
+            p += to_vertex * dir;
+            moved += to_vertex;
+            way += to_vertex.abs();
+            b = self.profile.linear(p, dir);
+        }
+        Approach { origin, dir, step, moved, way, p, a, b }
+    }
+}
+
+/// A line in the frame of a wall.
+struct Approach {
+    origin: DVec3,
+    dir: DVec3,
+    /// `dir` in multiples of the line's direction.
+    step: f64,
+    /// From the origin to `p`, in multiples of `dir`.
+    moved: f64,
+    /// The length of that way, there and back, in multiples of `dir`.
+    way: f64,
+    /// The point from which roots are sought.
+    p: DVec3,
+    /// A and B there.
+    a: f64,
+    b: f64,
 }
 
 impl Wall {
+    /// The equation of the wall at a place.
+    ///
+    /// A point moved by `m` changes `q` by at most `2 |g| m + m S m`, where `g` is half the
+    /// gradient and `S` has the absolute values of the second derivatives. Roots are sought
+    /// from a point `p` at a distance τ: there A, B and C are wrong by at most 4 u times the
+    /// sums of the absolute values of their products, which moves `q` at τ by
+    /// `ΔA τ² + 2 ΔB |τ| + ΔC`; and τ itself is rounded by 8 u.
+    pub(super) fn local(&self, spot: &Spot<'_>) -> Local {
+        let Spot { line, t, slack } = *spot;
+        let Approach { origin, dir, step, moved, way, p: vertex, .. } =
+            self.approach(line);
+        let t = t / step;
+        let size = self.to_local.linear.abs();
+        let away = (line.origin - self.to_local.origin).abs();
+        let m = size
+            * (line.rounding()
+                + DVec3::splat(slack)
+                + 5.0 * U * away
+                + 4.0 * U * spot.t.abs() * line.dir.abs())
+            + 4.0 * U * (origin.abs() + (way + t.abs()) * dir.abs());
+        let [zz, z, _] = self.profile.coefficients();
+        let weights = DVec3::new(1.0, 1.0, zz.abs());
+        let p = origin + t * dir;
+        let (gradient, d) = (self.profile.half_gradient(p), dir.abs());
+        let tau = (t - moved).abs();
+        let of_a = 4.0 * U * weights.dot(d * d);
+        let of_b = 4.0 * U * (weights.dot(vertex.abs() * d) + z.abs() * d.z);
+        let slope = 2.0 * gradient.dot(dir);
+        let rounding = (2.0 * gradient.abs() + weights * m).dot(m)
+            + (of_a * tau + 2.0 * of_b) * tau
+            + self.profile.value_rounding(vertex)
+            + self.profile.value_rounding(p)
+            + 8.0 * U * slope.abs() * (tau + way);
+        Local {
+            value: self.profile.value(p),
+            rounding,
+            slope: slope / step,
+            slope_rounding: (2.0 * weights.dot(m * d) + 2.0 * of_b) / step,
+            bend: self.profile.quadratic(dir) / step / step,
+            bend_rounding: of_a / step / step,
+        }
+    }
+
     /// How far along a line it comes closest to the middle; to the axis of a cylinder, which
     /// has no middle: then it does not matter how much of the cylinder is wanted.
     fn closest_approach(&self, origin: DVec3, dir: DVec3, quadratic: f64) -> f64 {
@@ -311,6 +380,36 @@ impl Profile {
             }
             Self::TwoSheets { vertex, slope } => {
                 difference_of_squares(across.hypot(slope * vertex), slope * p.z)
+            }
+        }
+    }
+
+    /// At most how wrong [`Profile::value`] is for an exact point: it is a product of a sum and a
+    /// difference of two lengths, each of which is rounded by 3 u of itself, that of the
+    /// cone by u of the two numbers whose sum it is.
+    fn value_rounding(&self, p: DVec3) -> f64 {
+        let across = p.truncate().length();
+        let of_product =
+            |a: f64, b: f64, b_rounding: f64| 2.0 * (a + b) * (3.0 * U * a + b_rounding);
+        match *self {
+            Self::Ball { radius } => of_product(p.length(), radius, 0.0),
+            Self::Cylinder { radius } => of_product(across, radius, 0.0),
+            Self::Cone { radius, slope } => of_product(
+                across,
+                (radius + slope * p.z).abs(),
+                2.0 * U * (radius.abs() + (slope * p.z).abs()),
+            ),
+            Self::Paraboloid { scale } => {
+                4.0 * U * (across * across + (scale * p.z).abs())
+            }
+            Self::OneSheet { waist, slope } => {
+                let b = waist.hypot(slope * p.z);
+                of_product(across, b, 3.0 * U * b)
+            }
+            Self::TwoSheets { vertex, slope } => {
+                let a = across.hypot(slope * vertex);
+                let b = (slope * p.z).abs();
+                of_product(a, b, 3.0 * U * b)
             }
         }
     }
