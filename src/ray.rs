@@ -49,6 +49,17 @@ pub enum Sense {
     Exit,
 }
 
+impl Sense {
+    /// The other way.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::Enter => Self::Exit,
+            Self::Exit => Self::Enter,
+        }
+    }
+}
+
 /// A place where a ray passes through the boundary of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {

@@ -318,9 +318,13 @@ impl Compiler {
             self.boxes.iter().map(|b| b.intersection(reach)).collect();
         let near = (0..).zip(&clipped).filter(|(_, b)| !b.is_empty()).map(|(i, _)| i);
         let hierarchy = Bvh::over(near.collect(), &clipped);
-        let slacks = self.slacks.iter().map(|slack| slack.within(&reach)).collect();
+        let slacks: Vec<f64> =
+            self.slacks.iter().map(|slack| slack.within(&reach)).collect();
+        let worst = |numbers: &[f64]| numbers.iter().copied().fold(0.0, f64::max);
         Ok(Scene {
             bounds,
+            worst_slack: worst(&slacks),
+            worst_condition: worst(&self.conditions),
             slacks,
             far_away: self.program.counts_far_away(&self.literals),
             program: self.program,

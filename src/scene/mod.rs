@@ -1,6 +1,9 @@
 //! Compiled scenes: flat, checked, never changed, shared between threads.
 
+mod certainty;
+mod classify;
 mod compile;
+mod depart;
 mod intern;
 mod program;
 mod trace;
@@ -15,6 +18,7 @@ use crate::color::Color;
 use crate::ray::{Crossing, Ray, Sense};
 use crate::shape::{Line, Shape, Spot};
 use crate::solid::{Place, Solid};
+pub use classify::Membership;
 pub use compile::{CompileError, LeafName};
 use program::{Literal, Program};
 pub use trace::Tracer;
@@ -33,6 +37,10 @@ pub struct Scene {
     shapes: Vec<Shape>,
     /// At most how far the surfaces of each leaf lie beside those that were said.
     slacks: Vec<f64>,
+    /// The largest of them.
+    worst_slack: f64,
+    /// The largest condition number of a leaf's map.
+    worst_condition: f64,
     /// Which part each leaf belongs to.
     parts: Vec<u32>,
     places: Vec<Option<Place>>,
@@ -118,14 +126,26 @@ impl Scene {
     ///
     /// The bound is of the leaf's own crossing. A ray that runs within rounding of a face
     /// without crossing it, or two faces of different leaves that are as near to each other,
-    /// can make a span appear or vanish.
+    /// can make a span appear or vanish; [`Tracer::classify`] says of a point that it is
+    /// [`On`](Membership::On) there.
     pub fn error_at(&self, ray: &Ray, crossing: &Crossing) -> f64 {
         let Some(line) = Line::new(ray, &self.bounds) else { return f64::INFINITY };
-        let t = line.from_ray(crossing.t);
+        let t = line.on_line(crossing.t);
         let slack = self.slacks[crossing.leaf as usize];
         let surface = self.shapes[crossing.leaf as usize].surface();
         let error = surface.error(&Spot { line: &line, t, slack }, crossing.face);
         line.error_on_ray(t, error)
+    }
+
+    /// A point a little before a crossing, for programs that start rays of their own there:
+    /// back along the ray by twice the bound on the crossing's error, so that it is on the
+    /// side from which the ray came.
+    ///
+    /// Rays that are traced here need no such thing: see [`Tracer::next_hit`]. Where the bound
+    /// is not small, because the ray runs along a face, the step is a millionth of the size of the solid.
+    pub fn point_before(&self, ray: &Ray, crossing: &Crossing) -> DVec3 {
+        let most = 1e-6 * self.bounds.size().length() / ray.speed();
+        ray.at(crossing.t - (2.0 * self.error_at(ray, crossing)).min(most))
     }
 
     /// How many leaves there are.

@@ -14,18 +14,20 @@ use crate::shape::{Event, Line, Sink};
 /// as it is entered; so a query costs what it meets, not what the scene holds.
 #[derive(Debug)]
 pub struct Tracer<'a> {
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     /// How many children of each node are true.
     counts: Vec<u32>,
     /// How often each leaf has been entered and not yet left.
     winding: Vec<i32>,
     events: Vec<Event>,
-    spans: Vec<Span>,
+    pub(super) spans: Vec<Span>,
+    /// How many spans and gaps of the ray asked last have both ends at the same number.
+    pub(super) collapsed: u64,
 }
 
 /// The direction in which points are asked about, (√0.3, √0.1, √0.6): along no axis,
 /// diagonal or other line that models are full of.
-const PROBE: DVec3 = DVec3::new(
+pub(super) const PROBE: DVec3 = DVec3::new(
     0.547_722_557_505_166_1,
     0.316_227_766_016_837_94,
     0.774_596_669_241_483_4,
@@ -39,6 +41,7 @@ impl<'a> Tracer<'a> {
             winding: vec![0; scene.shapes.len()],
             events: Vec::new(),
             spans: Vec::new(),
+            collapsed: 0,
         }
     }
 
@@ -51,6 +54,7 @@ impl<'a> Tracer<'a> {
     /// are such gaps.
     pub fn spans(&mut self, ray: &Ray) -> &[Span] {
         self.spans.clear();
+        self.collapsed = 0;
         if let Some(line) = Line::new(ray, &self.scene.bounds) {
             self.gather(&line);
             self.sweep(&line);
@@ -104,7 +108,7 @@ impl<'a> Tracer<'a> {
                     Some(enter) if enter.t < crossing.t => {
                         self.append(Span { enter, exit: crossing });
                     }
-                    Some(_) => {}
+                    Some(_) => self.collapsed += 1,
                 }
             }
             from += group;
@@ -117,7 +121,10 @@ impl<'a> Tracer<'a> {
     /// them: places that differ on the line can be one `t` of a ray that comes from afar.
     fn append(&mut self, span: Span) {
         match self.spans.last_mut() {
-            Some(last) if last.exit.t >= span.enter.t => last.exit = span.exit,
+            Some(last) if last.exit.t >= span.enter.t => {
+                last.exit = span.exit;
+                self.collapsed += 1;
+            }
             _ => self.spans.push(span),
         }
     }
@@ -145,6 +152,36 @@ impl<'a> Tracer<'a> {
             }
         }
         (before, program.root(&self.counts))
+    }
+
+    /// Toggles what lies up to `t = 0` of the ray asked last, and says how many events that are.
+    pub(super) fn pass_to_origin(&mut self, line: &Line) -> usize {
+        let passed =
+            self.events.iter().take_while(|event| line.on_ray(event.t) <= 0.0).count();
+        self.toggle(0..passed);
+        passed
+    }
+
+    /// Toggles the events from a number on, which brings the counters back.
+    pub(super) fn pass_on_from(&mut self, passed: usize) {
+        self.toggle(passed..self.events.len());
+    }
+
+    /// Whether the place passed last is inside a leaf.
+    pub(super) fn is_in(&self, leaf: u32) -> bool {
+        self.winding[leaf as usize] > 0
+    }
+
+    /// Tells the counters that a leaf counts as inside or outside, for a while.
+    pub(super) fn flip(&mut self, leaf: u32, inside: bool) {
+        let Scene { program, literals, .. } = self.scene;
+        let literal = literals[leaf as usize];
+        program.toggle(&mut self.counts, literal.parent, inside != literal.complement);
+    }
+
+    /// Whether the place passed last is inside the solid.
+    pub(super) fn root(&self) -> bool {
+        self.scene.program.root(&self.counts)
     }
 
     /// The event to which a change of the root is put down: the first in the order of the

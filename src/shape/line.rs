@@ -58,7 +58,7 @@ impl Line {
     }
 
     /// A place on the ray as a place on this line.
-    pub(crate) fn from_ray(&self, t: f64) -> f64 {
+    pub(crate) fn on_line(&self, t: f64) -> f64 {
         t / self.scale - self.offset
     }
 

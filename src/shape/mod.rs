@@ -28,7 +28,7 @@ use crate::aabb::Aabb;
 use crate::ray::Sense;
 pub(crate) use chain::Chain;
 use cuboid::Cuboid;
-pub(crate) use doubt::{Local, Spot};
+pub(crate) use doubt::{Local, Spot, U};
 use half_space::HalfSpace;
 pub(crate) use line::Line;
 use place::Frame;
@@ -192,6 +192,21 @@ impl Shape {
         }
     }
 
+    /// The surface on which a face lies, and whether the leaf is on the side where that surface's
+    /// equation is positive.
+    pub(crate) fn identity(&self, face: u32) -> (Identity, bool) {
+        let of_plane = |plane: &Plane| (Identity::Plane(plane.numbers()), plane.above);
+        match self {
+            Self::Cuboid(leaf) => of_plane(&leaf.planes[face as usize % 6]),
+            Self::HalfSpace(leaf) => of_plane(&leaf.planes[0]),
+            Self::Polyhedron(leaf) => (Identity::Mesh(leaf.numbers()), false),
+            Self::Quadric(leaf) => match &leaf.planes {
+                Some(planes) if face > 0 => of_plane(&planes[(face as usize - 1) % 2]),
+                _ => (Identity::Wall(leaf.wall.numbers()), false),
+            },
+        }
+    }
+
     /// What kind of leaf it is, as in [`Primitive::name`].
     pub(crate) fn kind(&self) -> &'static str {
         match self {
@@ -211,6 +226,15 @@ impl Shape {
             Self::Quadric(leaf) => leaf,
         }
     }
+}
+
+/// A surface by its numbers: faces of two leaves lie on one surface where these are equal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Identity {
+    Plane([f64; 4]),
+    Wall([f64; 15]),
+    /// All faces of a mesh, by its address and its place.
+    Mesh((usize, [f64; 12])),
 }
 
 /// A crossing of a line with the surface of one leaf.

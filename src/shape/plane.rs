@@ -52,6 +52,12 @@ impl Plane {
         (0..3).find(|axis| (1..3).all(|k| self.normal[(axis + k) % 3] == 0.0))
     }
 
+    /// The numbers that describe it, whichever side is meant.
+    pub(crate) fn numbers(&self) -> [f64; 4] {
+        let DVec3 { x, y, z } = self.normal;
+        [x, y, z, self.offset]
+    }
+
     /// The outward normal.
     pub(crate) fn outward(&self) -> DVec3 {
         if self.above { -self.normal } else { self.normal }

@@ -163,6 +163,14 @@ impl Surface for Polyhedron {
 }
 
 impl Polyhedron {
+    /// The numbers that tell it from others.
+    pub(super) fn numbers(&self) -> (usize, [f64; 12]) {
+        let mut numbers = [0.0; 12];
+        numbers[..9].copy_from_slice(&self.to_local.linear.to_cols_array());
+        numbers[9..].copy_from_slice(&self.to_local.origin.to_array());
+        (Arc::as_ptr(&self.mesh).addr(), numbers)
+    }
+
     /// A line in the frame of the mesh: its origin, its direction, and at most how far rounding has
     /// moved its point at the spot on each axis.
     fn seen_from(&self, spot: &Spot<'_>) -> (DVec3, DVec3, DVec3) {
