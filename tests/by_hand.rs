@@ -34,6 +34,21 @@ fn a_tangent_makes_no_span() {
 }
 
 #[test]
+fn a_line_that_touches_an_edge_makes_no_span() {
+    let edge = dvec3(-1.0, 1.0, 0.25);
+    for dir in [dvec3(3.0, 4.0, 0.0), dvec3(1.0, 3.0, 0.125), dvec3(0.3, 0.7, -0.1)] {
+        for steps in (-40..40).map(f64::from) {
+            let ray = Ray::new(edge + steps * dir, dir);
+            let beside = ray.at(-steps) - edge;
+            assert!(
+                beside != DVec3::ZERO || ends(&cube(2.0), &ray).is_empty(),
+                "{ray:?}"
+            );
+        }
+    }
+}
+
+#[test]
 fn maps_apply_from_the_inside_out() {
     let bar = Solid::cuboid(dvec3(4.0, 2.0, 2.0));
     let quarter = std::f64::consts::FRAC_PI_2;

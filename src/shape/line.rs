@@ -48,7 +48,8 @@ impl Line {
         if near > far || !near.is_finite() || !far.is_finite() {
             return None;
         }
-        let offset = coarse(0.5 * (near + far), far - near);
+        let width = (far - near).max(LEAST_WIDTH);
+        let offset = coarse(0.5 * (near + far), width);
         Some(Self { origin: ray.origin + offset * dir, dir, offset, scale })
     }
 
@@ -77,6 +78,11 @@ impl Line {
         Slabs::new(self.origin, self.dir, bounds)
     }
 }
+
+/// A line that only touches the bounds counts as being inside for this part of a step:
+/// else there would be no round number near, and planes that meet where it touches would be
+/// crossed at different places. A millionth leaves a round number some 28 digits.
+const LEAST_WIDTH: f64 = 1.0 / 1_048_576.0;
 
 /// A number that differs from `x` by at most 1/256 of `width` and has no more digits than
 /// that takes.
