@@ -78,6 +78,9 @@ fn contains_answers_each_point_and_says_no_if_any_is_out() {
     assert_eq!(done.code, 1);
     let done = desk.run(&["contains", "tube.csg", "4,0,5"]);
     assert_eq!((done.code, done.out.as_str()), (0, "4,0,5 in\n"));
+    // The boundary is not out.
+    let done = desk.run(&["contains", "tube.csg", "4,0,0"]);
+    assert_eq!((done.code, done.out.as_str()), (0, "4,0,0 on\n"));
 }
 
 #[test]
@@ -144,6 +147,7 @@ struct SpanJson {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CrossingJson {
+    error: Option<f64>,
     point: [f64; 3],
     normal: [f64; 3],
     leaf: u32,
@@ -205,6 +209,8 @@ struct EstimateJson {
     method: String,
     target_met: bool,
     resolved: bool,
+    spans: u64,
+    uncertain: u64,
 }
 
 #[test]
@@ -221,9 +227,31 @@ fn volume_says_value_interval_and_how() {
     assert_eq!(json["target_met"], true);
     assert_eq!(json["seed"], 5);
     assert!(number("rays") > 0.0 && number("seconds") >= 0.0);
+    assert!(number("spans") > 0.0 && number("spans") < number("rays"));
+    assert_eq!(json["uncertain"], 0);
     let again = desk.run(&[&args[..], &["-j", "1"]].concat());
     let again: serde_json::Value = serde_json::from_str(&again.out).expect("one object");
     assert_eq!(json["value"], again["value"], "the same bits on one thread");
+}
+
+#[test]
+fn volume_counts_what_is_thinner_than_rounding() {
+    let desk = Desk::new();
+    let slab = |x: &str| {
+        format!(
+            "multmatrix([[1, 0, 0, {x}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) cube(size = [1, 9, 9], center = false);"
+        )
+    };
+    desk.put("film.csg", &format!("{} {}", slab("0"), slab("1.00000000000002")));
+    let done = desk.run(&["volume", "film.csg", "-v", "--max-rays", "4000"]);
+    let spans = done.out.lines().find(|line| line.starts_with("spans")).expect(&done.out);
+    assert!(
+        spans.ends_with("of them or of the gaps between shorter than rounding"),
+        "{spans}"
+    );
+    desk.put("film.csg", &format!("{} {}", slab("0"), slab("1.000001")));
+    let done = desk.run(&["volume", "film.csg", "-v", "--max-rays", "4000"]);
+    assert!(done.out.contains("none of them shorter than rounding"), "{}", done.out);
 }
 
 #[test]

@@ -7,6 +7,7 @@ use anyhow::bail;
 use clap::Args;
 use glam::DVec3;
 use serde::Serialize;
+use solidray::Membership;
 
 use super::input::{Reading, lines_of_numbers};
 use super::numbers::Numbers;
@@ -15,7 +16,8 @@ use super::{Answer, Global};
 
 /// Say for points whether they are inside
 ///
-/// Prints `in` or `out` for each point. The exit code is 1 if any of them is out. On standard
+/// Prints `in`, `out` or, where the boundary is nearer than rounding can tell, `on` for each
+/// point. The exit code is 1 if any of them is out. On standard
 /// input numbers are separated by commas or blanks; `#` begins a comment, and a first line of
 /// names is skipped.
 #[derive(Args, Debug)]
@@ -52,11 +54,11 @@ impl Contains {
         }
         let each = |numbers: [f64; 3]| -> anyhow::Result<()> {
             let p = DVec3::from_array(numbers);
-            let inside = tracer.contains(p);
-            if !inside {
+            let found = tracer.classify(p);
+            if found == Membership::Out {
                 answer = Answer::No;
             }
-            let r#where = if inside { "in" } else { "out" };
+            let r#where = found.name();
             if global.json {
                 // Written as it comes: there may be more points than memory.
                 write!(out, "{separator}")?;

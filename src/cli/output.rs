@@ -35,12 +35,16 @@ pub(super) struct EstimateJson {
     method: &'static str,
     target_met: bool,
     resolved: bool,
+    spans: u64,
+    uncertain: u64,
 }
 
 impl From<&Estimate> for EstimateJson {
     fn from(estimate: &Estimate) -> Self {
-        let Estimate { value, interval, rays, method, target_met, resolved } = *estimate;
-        Self { value, interval, rays, method: method.name(), target_met, resolved }
+        let Estimate { value, interval, rays, method, .. } = *estimate;
+        let Estimate { target_met, resolved, spans, uncertain, .. } = *estimate;
+        let method = method.name();
+        Self { value, interval, rays, method, target_met, resolved, spans, uncertain }
     }
 }
 
@@ -60,6 +64,17 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
         return format!("{:.digits$e} ± {half_width:.1e} (95 %)", estimate.value);
     }
     format!("{:.decimals$} ± {half_width:.decimals$} (95 %)", estimate.value)
+}
+
+/// How many spans there were and how many of them rounding decided.
+pub(super) fn uncertain_in_words(estimate: &Estimate) -> String {
+    let Estimate { spans, uncertain, .. } = estimate;
+    match uncertain {
+        0 => format!("{spans}, none of them shorter than rounding"),
+        n => format!(
+            "{spans}, and {n} of them or of the gaps between shorter than rounding"
+        ),
+    }
 }
 
 /// How many decimals show two digits of an error bar.
@@ -143,6 +158,8 @@ mod tests {
             method: Method::Lattice,
             target_met: true,
             resolved: true,
+            spans: 1,
+            uncertain: 0,
         };
         assert_eq!(in_words(&estimate(113.097_335, 0.0123)), "113.097 ± 0.012 (95 %)");
         assert_eq!(in_words(&estimate(113_097.335, 12.3)), "113097 ± 12 (95 %)");

@@ -52,6 +52,9 @@ struct SpanJson {
 
 #[derive(Serialize)]
 struct CrossingJson {
+    /// At most how far `t` is from that of the solid as it was said; none if that is
+    /// not bounded.
+    error: Option<f64>,
     point: [f64; 3],
     normal: [f64; 3],
     leaf: u32,
@@ -133,6 +136,10 @@ fn print(
         )?;
         for (word, crossing) in [("in ", &span.enter), ("out", &span.exit)] {
             writeln!(out, "    {word} {}", in_words(scene, ray, crossing))?;
+            if global.verbose {
+                let error = scene.error_at(ray, crossing);
+                writeln!(out, "        t ± {error:.1e} at most, by rounding")?;
+            }
         }
     }
     Ok(())
@@ -157,6 +164,7 @@ impl RayJson {
         let crossing = |c: &Crossing| {
             let leaf = scene.leaf(c.leaf);
             CrossingJson {
+                error: Some(scene.error_at(ray, c)).filter(|error| error.is_finite()),
                 point: ray.at(c.t).to_array(),
                 normal: scene.normal_at(ray, c).to_array(),
                 leaf: c.leaf,

@@ -10,7 +10,7 @@ use solidray::measure;
 
 use super::input::Reading;
 use super::meter::Meter;
-use super::output::{self, EstimateJson, in_words};
+use super::output::{self, EstimateJson, in_words, uncertain_in_words};
 use super::sampling::SamplingArgs;
 use super::{Answer, Global};
 
@@ -68,6 +68,7 @@ impl Volume {
         if global.verbose {
             writeln!(out, "method    {}", volume.method.name())?;
             writeln!(out, "rays      {}", volume.rays)?;
+            writeln!(out, "spans     {}", uncertain_in_words(&volume))?;
             writeln!(
                 out,
                 "seconds   {seconds:.3} (reading {:.3}, compiling {:.3})",

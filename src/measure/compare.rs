@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::estimate::{Estimate, Method};
+use super::estimate::Estimate;
 use super::lattice::{Beam, Round, Sampling, Tally, rounds, student};
 use super::volume::{Chords, estimate, is_nothing};
 use crate::progress::Progress;
-use crate::ray::{Ray, Span};
+use crate::ray::Ray;
 use crate::scene::{CompileError, Scene, Tracer};
 use crate::solid::Solid;
 
@@ -133,14 +133,16 @@ fn both_empty() -> Comparison {
 }
 
 fn sample(tracers: &mut [Tracer<'_>; 4], ray: &Ray, tallies: &mut Tallies) {
-    let mut only_one = 0.0;
+    let mut only_one = Chords::default();
     for (i, tracer) in tracers.iter_mut().enumerate() {
-        let spans = tracer.spans(ray);
-        let length = spans.iter().map(Span::length).sum();
-        tallies.chords[i].add_ray(length);
+        let chords = Chords::of(tracer, ray);
+        tallies.chords[i].add(chords);
         if i >= 2 {
-            only_one += length;
-            let longest = spans.iter().max_by(|s, t| s.length().total_cmp(&t.length()));
+            only_one.add(chords);
+            let longest = tracer
+                .spans_found()
+                .iter()
+                .max_by(|s, t| s.length().total_cmp(&t.length()));
             let found = longest.map(|span| Worst {
                 length: span.length() * ray.speed(),
                 from: ray.at(span.enter.t),
@@ -150,7 +152,8 @@ fn sample(tracers: &mut [Tracer<'_>; 4], ray: &Ray, tallies: &mut Tallies) {
             tallies.worst = longer(tallies.worst, found);
         }
     }
-    tallies.difference.add_ray(only_one);
+    only_one.hits = only_one.hits.min(1);
+    tallies.difference.add(only_one);
 }
 
 /// The longer of two stretches, the first if they are equally long.
@@ -221,6 +224,8 @@ fn overlap(
         Chords {
             length: 0.5 * (a.length + b.length + t.difference.length),
             hits: a.hits.max(b.hits),
+            spans: a.spans + b.spans,
+            uncertain: a.uncertain + b.uncertain,
         }
     });
     let interval = if difference.resolved {
@@ -229,12 +234,5 @@ fn overlap(
         [(1.0 - difference.interval[1] / union.value).max(0.0), 1.0]
     };
     let target_met = union.resolved && interval[1] - interval[0] <= 2.0 * rel_tol;
-    Estimate {
-        value,
-        interval,
-        rays,
-        method: Method::Lattice,
-        target_met,
-        resolved: union.resolved,
-    }
+    Estimate { value, interval, target_met, ..union }
 }

@@ -16,6 +16,11 @@ pub struct Estimate {
     /// Whether enough rays met the solid for `value` to mean anything. If not, `interval`
     /// begins at zero and its end is a one-sided bound.
     pub resolved: bool,
+    /// How many stretches of rays inside the solid the value was found from.
+    pub spans: u64,
+    /// How many of them, and of the gaps between them, are so short that rounding decides
+    /// whether they are there; see [`Tracer::uncertain`](crate::Tracer::uncertain).
+    pub uncertain: u64,
 }
 
 /// How a number was found.
@@ -48,6 +53,8 @@ impl Estimate {
             method: Method::Exact,
             target_met: true,
             resolved: true,
+            spans: 0,
+            uncertain: 0,
         }
     }
 

@@ -5,7 +5,8 @@ use super::lattice::{
     Beam, ENOUGH_HITS, Round, Sampling, Tally, most_hits, rounds, student,
 };
 use crate::progress::Progress;
-use crate::scene::Scene;
+use crate::ray::{Ray, Span};
+use crate::scene::{Scene, Tracer};
 
 /// Chords of one solid.
 #[derive(Clone, Copy, Debug, Default)]
@@ -14,20 +15,32 @@ pub(super) struct Chords {
     pub(super) length: f64,
     /// How many rays have any.
     pub(super) hits: u64,
+    /// How many there are.
+    pub(super) spans: u64,
+    /// How many of them, and of the gaps between them, are shorter than rounding.
+    pub(super) uncertain: u64,
 }
 
 impl Tally for Chords {
     fn add(&mut self, later: Self) {
         self.length += later.length;
         self.hits += later.hits;
+        self.spans += later.spans;
+        self.uncertain += later.uncertain;
     }
 }
 
 impl Chords {
-    /// Adds one ray's.
-    pub(super) fn add_ray(&mut self, length: f64) {
-        self.length += length;
-        self.hits += u64::from(length > 0.0);
+    /// Those of one ray.
+    pub(super) fn of(tracer: &mut Tracer<'_>, ray: &Ray) -> Self {
+        let spans = tracer.spans(ray);
+        let length = spans.iter().map(Span::length).sum();
+        Self {
+            length,
+            hits: u64::from(length > 0.0),
+            spans: spans.len() as u64,
+            uncertain: tracer.uncertain(ray),
+        }
     }
 }
 
@@ -66,7 +79,7 @@ pub fn volume_with(
         progress,
         || scene.tracer(),
         |tracer, ray, chords: &mut Chords| {
-            chords.add_ray(tracer.spans(ray).iter().map(|span| span.length()).sum());
+            chords.add(Chords::of(tracer, ray));
         },
         |round, rays| {
             let hopeless = rays >= sampling.max_rays / PATIENCE
@@ -97,14 +110,13 @@ pub(super) fn estimate<T>(
     let whole_box = beam.depth() * beam.area();
     if round.size == 0 {
         let interval = [0.0, whole_box];
-        let (value, method) = (0.0, Method::Lattice);
         return Estimate {
-            value,
             interval,
             rays,
-            method,
+            method: Method::Lattice,
             target_met: false,
             resolved: false,
+            ..Estimate::exact(0.0)
         };
     }
     let chords: Vec<Chords> = round.replicates.iter().map(chords).collect();
@@ -120,5 +132,15 @@ pub(super) fn estimate<T>(
         [0.0, bound.min(whole_box)]
     };
     let target_met = resolved && half_width <= rel_tol * value;
-    Estimate { value, interval, rays, method: Method::Lattice, target_met, resolved }
+    let count = |of: fn(&Chords) -> u64| chords.iter().map(of).sum();
+    Estimate {
+        value,
+        interval,
+        rays,
+        method: Method::Lattice,
+        target_met,
+        resolved,
+        spans: count(|c| c.spans),
+        uncertain: count(|c| c.uncertain),
+    }
 }

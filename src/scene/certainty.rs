@@ -2,24 +2,43 @@
 
 use super::trace::Tracer;
 use crate::ray::Ray;
+use crate::shape::U;
 
 impl Tracer<'_> {
     /// How many of the spans and gaps that [`Tracer::spans`] just found along this ray are so
-    /// short that rounding decides whether they are there: shorter than the bounds on the errors of
-    /// their ends ([`Scene::error_at`](crate::Scene::error_at)). Those whose ends are one number `t`, which
-    /// are left out of the list, count too.
+    /// short that rounding decides whether they are there: shorter than the bounds on the
+    /// errors of their ends ([`Scene::error_at`](crate::Scene::error_at)). Those whose ends
+    /// are one number `t`, which are left out of the list, count too.
+    ///
+    /// Only pieces shorter than about √ε are looked at, where ε is the largest displacement of any
+    /// surface by rounding and lengths are fractions of the solid's size: no graze of a curved face is
+    /// longer. A ray that runs along a plane within rounding, at an angle smaller than √ε,
+    /// could have longer ones; they do not count.
     pub fn uncertain(&self, ray: &Ray) -> u64 {
-        let error = |crossing| self.scene.error_at(ray, crossing);
         let mut count = self.collapsed;
-        let mut previous: Option<(f64, f64)> = None;
-        for span in &self.spans {
-            let (enter, exit) = (error(&span.enter), error(&span.exit));
-            count += u64::from(span.length() <= enter + exit);
-            if let Some((t, error)) = previous {
-                count += u64::from(span.enter.t - t <= enter + error);
+        let pieces = self.spans.windows(2).map(|pair| (pair[0].exit, pair[1].enter));
+        let pieces = pieces.chain(self.spans.iter().map(|span| (span.enter, span.exit)));
+        let mut thin = None;
+        for (from, to) in pieces {
+            let length = to.t - from.t;
+            if length <= *thin.get_or_insert_with(|| self.thin(ray)) {
+                let error = |crossing| self.scene.error_at(ray, crossing);
+                count += u64::from(length <= error(&from) + error(&to));
             }
-            previous = Some((span.exit.t, exit));
         }
         count
+    }
+
+    /// The length, in multiples of the ray's direction, from which on pieces are certain.
+    fn thin(&self, ray: &Ray) -> f64 {
+        /// The bound of a graze is 2.5 √(ε R) at either end; the rest is room for solids of
+        /// which R is not the largest length.
+        const ROOM: f64 = 16.0;
+        let bounds = self.scene.hierarchy.bounds();
+        let size = bounds.size().max_element();
+        let far = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let far = 2.0 * far + ray.origin.abs().max_element();
+        let moved = self.scene.worst_slack + 16.0 * U * self.scene.worst_condition * far;
+        ROOM * (moved * size).sqrt() / ray.speed()
     }
 }

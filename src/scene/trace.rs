@@ -62,6 +62,11 @@ impl<'a> Tracer<'a> {
         &self.spans
     }
 
+    /// The answer of [`Tracer::spans`] once more, for the ray that was asked last.
+    pub(crate) fn spans_found(&self) -> &[Span] {
+        &self.spans
+    }
+
     /// The first crossing at `t ≥ 0`: where the ray enters, or where it comes out if it
     /// starts inside.
     pub fn first_hit(&mut self, ray: &Ray) -> Option<Crossing> {
