@@ -4,6 +4,7 @@
 //! Coordinates are −2, −1, 0, 1 or 2 quarters, so that faces, edges and corners meet as
 //! often as they can. `PROPTEST_CASES=100000 cargo test --test fractions` looks for longer.
 
+#[expect(dead_code, reason = "whole numbers are enough here")]
 mod oracle;
 #[expect(dead_code, reason = "lattices take the exact among the strategies")]
 mod support;

@@ -3,5 +3,9 @@
 //!
 //! A test file takes what it needs: `#[expect(dead_code, reason = "…")] mod oracle;`.
 
+pub(crate) mod compare;
 pub(crate) mod lattice;
+pub(crate) mod placed;
+pub(crate) mod real;
+pub(crate) mod surface;
 pub(crate) mod sweep;

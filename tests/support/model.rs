@@ -224,7 +224,7 @@ impl Leaf {
     }
 
     /// A length of the leaf's own order.
-    fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         match *self {
             Self::Cuboid { min, max } => min.length().max(max.length()),
             Self::Ball { radius } => radius,

@@ -1,0 +1,209 @@
+//! Leaves in their places, in numbers of 200 bits: where lines meet them, and how far
+//! rounding can move that.
+
+use glam::{DAffine3, DMat3, DVec3};
+use solidray::Ray;
+
+use super::real::{Map, Real, Vector};
+use super::surface::{Polynomial, Surface, surfaces};
+use crate::support::model::{Leaf, Model};
+
+/// A leaf under a chain of maps, each taken as exact.
+#[derive(Debug)]
+pub(crate) struct Placed {
+    surfaces: Vec<Surface>,
+    origin: Vector,
+    rows: [Vector; 3],
+    /// The condition number of the map.
+    pub(crate) condition: f64,
+    /// No point of the leaf is farther from its origin than this, as placed.
+    pub(crate) reach: f64,
+    /// The largest coordinate that occurs while the maps are multiplied out, times one for
+    /// the leaf and a half for each map.
+    pub(crate) spread: f64,
+}
+
+/// What a line meets of one surface.
+#[derive(Debug)]
+pub(crate) struct Pass {
+    pub(crate) starts_inside: bool,
+    pub(crate) meetings: Vec<Meeting>,
+}
+
+/// A place where a line meets a surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Meeting {
+    pub(crate) t: Real,
+    /// How far off rounding may find it.
+    pub(crate) error: f64,
+    /// Whether it comes in or goes out; else it all but touches the surface there, and
+    /// rounding may find two crossings or none.
+    pub(crate) crosses: bool,
+}
+
+/// The unit of rounding.
+pub(crate) const U: f64 = 0.5 * f64::EPSILON;
+
+/// How many roundings of the lengths at hand an error is made of.
+const ROUNDINGS: f64 = 1.0;
+
+/// The leaves of a model in the order of the tree.
+pub(crate) fn placed(model: &Model) -> Vec<Placed> {
+    let mut leaves = Vec::new();
+    place(model, &[], &mut leaves);
+    leaves
+}
+
+fn place(model: &Model, maps: &[DAffine3], leaves: &mut Vec<Placed>) {
+    match model {
+        Model::Leaf(leaf) => leaves.push(Placed::new(leaf, maps)),
+        Model::Mapped(map, child) => {
+            let maps: Vec<DAffine3> = maps.iter().copied().chain([*map]).collect();
+            place(child, &maps, leaves);
+        }
+        Model::Boolean(_, children) => {
+            children.iter().for_each(|child| place(child, maps, leaves));
+        }
+    }
+}
+
+impl Placed {
+    /// A leaf under maps of which the last is applied first.
+    pub(crate) fn new(leaf: &Leaf, maps: &[DAffine3]) -> Self {
+        let identity = Map::exact(&DAffine3::IDENTITY);
+        let map =
+            maps.iter().fold(identity, |product, map| product.after(&Map::exact(map)));
+        let rows = map.inverse_rows();
+        let norm = |vectors: &[Vector; 3]| {
+            let squares = vectors.iter().map(|v| v.rounded().length().powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        let largest = maps
+            .iter()
+            .rev()
+            .fold(DVec3::splat(leaf.size()), |p, map| absolute(map).transform_point3(p));
+        let stretch = norm(&map.columns);
+        Self {
+            surfaces: surfaces(leaf),
+            condition: stretch * norm(&rows),
+            reach: stretch * leaf.size(),
+            spread: largest.length() * (1.0 + 0.5 * maps.len() as f64),
+            origin: map.offset,
+            rows,
+        }
+    }
+
+    /// What a line meets of the leaf's surfaces, of which the leaf is the common inside, in
+    /// a scene with coordinates up to `largest`.
+    pub(crate) fn passes(&self, ray: &Ray, largest: f64) -> Vec<Pass> {
+        let from = Vector::exact(ray.origin).minus(&self.origin);
+        let dir = Vector::exact(ray.dir);
+        let to_local = |v: &Vector| Vector(self.rows.each_ref().map(|row| row.dot(v)));
+        let (origin, dir) = (to_local(&from), to_local(&dir));
+        let line = Local { origin, dir, ray, origin_beside: from, largest };
+        self.surfaces.iter().map(|surface| self.pass(surface, &line)).collect()
+    }
+
+    fn pass(&self, surface: &Surface, line: &Local) -> Pass {
+        let Polynomial { a, b, c } = surface.along(&line.origin, &line.dir);
+        let zero = Real::exact(0.0);
+        let blur = |t: &Real| self.blur(surface, line, t);
+        if a.is_zero() && b.is_zero() {
+            // Parallel: in or out for good, unless it runs as near as rounding.
+            let beside = line.closest();
+            let error = if c.rounded().abs() <= 4.0 * blur(&beside) {
+                f64::INFINITY
+            } else {
+                0.0
+            };
+            let meeting = Meeting { t: beside, error, crosses: false };
+            let meetings = if error > 0.0 { vec![meeting] } else { Vec::new() };
+            return Pass { starts_inside: c <= zero, meetings };
+        }
+        if a.is_zero() {
+            let t = -(c / (&b + &b));
+            let error = blur(&t) / b.rounded().abs();
+            let meetings = vec![Meeting { t, error, crosses: true }];
+            return Pass { starts_inside: b > zero, meetings };
+        }
+        let starts_inside = a < zero;
+        let discriminant = b.squared() - &a * &c;
+        if discriminant > zero {
+            let root = discriminant.sqrt();
+            let sum = if b < zero { &root - &b } else { -(&root + &b) };
+            let (first, second) = (&sum / &a, &c / &sum);
+            let (first, second) =
+                if first < second { (first, second) } else { (second, first) };
+            let gap = (&second - &first).rounded();
+            let meetings = [first, second].map(|t| {
+                let error = 1.1 * blur(&t) / root.rounded();
+                Meeting { t, error, crosses: true }
+            });
+            if meetings.iter().any(|meeting| 16.0 * meeting.error < gap) {
+                return Pass { starts_inside, meetings: meetings.to_vec() };
+            }
+        }
+        // The parabola's vertex, and how far above or below the surface the line is there.
+        // A cone's gradient vanishes at its apex, but grows along a line through it.
+        let t = -(&b / &a);
+        let height = (&c - &b * &b / &a).rounded().abs();
+        let growth = self.to_world(&surface.weighed(&line.dir)).length();
+        let growth = 2.0 * growth * self.rounding(line, &t) / a.rounded().abs();
+        let blur = 2.0 * blur(&t);
+        let touch = ((height + blur) / a.rounded().abs()).sqrt();
+        let meeting = Meeting { t, error: 2.0 * (touch + growth), crosses: false };
+        let meetings = if height <= 16.0 * blur || discriminant > zero {
+            vec![meeting]
+        } else {
+            Vec::new()
+        };
+        Pass { starts_inside, meetings }
+    }
+
+    /// By how much half the value of a surface at a place on a line is uncertain: the length
+    /// of half its gradient in the world times the rounding of the place.
+    fn blur(&self, surface: &Surface, line: &Local, t: &Real) -> f64 {
+        let p = line.origin.plus(&line.dir.times(t));
+        let normal = self.to_world(&surface.half_gradient(&p));
+        normal.length() * self.rounding(line, t)
+    }
+
+    /// How far rounding moves a place on a line or the leaf there: a few units of all
+    /// lengths that are added up on the way, those in the leaf's frame times its condition.
+    fn rounding(&self, line: &Local, t: &Real) -> f64 {
+        let beside = line.origin_beside.plus(&Vector::exact(line.ray.dir).times(t));
+        let in_world = line.ray.origin.length() + t.rounded().abs() * line.ray.speed();
+        let in_leaf = self.condition * (beside.rounded().length() + self.reach);
+        ROUNDINGS * U * (in_world + line.largest + self.spread + in_leaf)
+    }
+
+    /// A normal of the leaf's frame in the world.
+    fn to_world(&self, normal: &Vector) -> DVec3 {
+        let [x, y, z] = [0, 1, 2].map(|i| self.rows[i].times(&normal.0[i]));
+        x.plus(&y).plus(&z).rounded()
+    }
+}
+
+/// A line in the frame of a leaf.
+struct Local<'a> {
+    origin: Vector,
+    dir: Vector,
+    ray: &'a Ray,
+    /// The ray's origin as seen from that of the leaf.
+    origin_beside: Vector,
+    /// The largest coordinate of the scene.
+    largest: f64,
+}
+
+impl Local<'_> {
+    /// Where it comes closest to the origin of the leaf.
+    fn closest(&self) -> Real {
+        -(self.origin.dot(&self.dir) / self.dir.dot(&self.dir))
+    }
+}
+
+fn absolute(map: &DAffine3) -> DAffine3 {
+    let m = map.matrix3;
+    let linear = DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs());
+    DAffine3::from_mat3_translation(linear, map.translation.abs())
+}
