@@ -16,7 +16,9 @@ use crate::ray::Ray;
 /// Ray/Sphere Intersection", Ray Tracing Gems, ch. 7, 2019). It depends on the line and the
 /// scene alone. It is a round number of steps along the direction: then it rounds nothing
 /// either where coordinates have few digits, and planes at whole millimetres are crossed at
-/// whole numbers. The direction is scaled by a power of two, which rounds nothing.
+/// whole numbers. Elsewhere each coordinate is rounded once, however far away the ray starts:
+/// a line moved sideways by more would find chords of other lengths. The direction is scaled
+/// by a power of two, which rounds nothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
     /// The point at `t = 0` of this line.
@@ -50,7 +52,12 @@ impl Line {
         }
         let width = (far - near).max(LEAST_WIDTH);
         let offset = coarse(0.5 * (near + far), width);
-        Some(Self { origin: ray.origin + offset * dir, dir, offset, scale })
+        Some(Self {
+            origin: dir.mul_add(DVec3::splat(offset), ray.origin),
+            dir,
+            offset,
+            scale,
+        })
     }
 
     /// A place on this line as a place on the ray.
@@ -65,7 +72,7 @@ impl Line {
 
     /// At most how far the true origin of the line is from this one, on each axis.
     pub(super) fn rounding(&self) -> DVec3 {
-        U * ((self.offset * self.dir).abs() + self.origin.abs())
+        U * self.origin.abs()
     }
 
     /// A bound for a place `t` on this line as a bound for it on the ray.
