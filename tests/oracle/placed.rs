@@ -27,6 +27,9 @@ pub(crate) struct Placed {
 #[derive(Debug)]
 pub(crate) struct Pass {
     pub(crate) starts_inside: bool,
+    /// Where it passes through, in order, to the last digit.
+    pub(crate) roots: Vec<Real>,
+    /// The same as rounding may find it.
     pub(crate) meetings: Vec<Meeting>,
 }
 
@@ -104,43 +107,88 @@ impl Placed {
         self.surfaces.iter().map(|surface| self.pass(surface, &line)).collect()
     }
 
+    /// Where a line comes in (true) and goes out, in order, to the last digit.
+    pub(crate) fn crossings(&self, ray: &Ray) -> Vec<(Real, bool)> {
+        let passes = self.passes(ray, 0.0);
+        let mut inside: Vec<bool> =
+            passes.iter().map(|pass| pass.starts_inside).collect();
+        let roots = |(i, pass): (usize, &Pass)| {
+            pass.roots.iter().map(move |t| (t.clone(), i)).collect::<Vec<_>>()
+        };
+        let mut roots: Vec<(Real, usize)> =
+            passes.iter().enumerate().flat_map(roots).collect();
+        roots.sort_by(|a, b| a.0.partial_cmp(&b.0).expect("these are numbers"));
+        let mut crossings = Vec::new();
+        for group in roots.chunk_by(|a, b| a.0 == b.0) {
+            let before = inside.iter().all(|&inside| inside);
+            group.iter().for_each(|&(_, i)| inside[i] ^= true);
+            let after = inside.iter().all(|&inside| inside);
+            if before != after {
+                crossings.push((group[0].0.clone(), after));
+            }
+        }
+        crossings
+    }
+
+    /// How far a place on a ray is from a face, to first order.
+    pub(crate) fn distance(&self, face: u32, ray: &Ray, t: f64) -> f64 {
+        let surface = &self.surfaces[face as usize];
+        let p = self.to_local(ray, t);
+        let none = Vector::exact(DVec3::ZERO);
+        let value = surface.along(&p, &none).c.rounded().abs();
+        value / (2.0 * self.to_world(&surface.half_gradient(&p)).length())
+    }
+
+    /// The unit normal out of a face at a place on a ray.
+    pub(crate) fn normal(&self, face: u32, ray: &Ray, t: f64) -> DVec3 {
+        let half_gradient =
+            self.surfaces[face as usize].half_gradient(&self.to_local(ray, t));
+        self.to_world(&half_gradient).normalize()
+    }
+
+    /// A place on a ray as the leaf sees it.
+    fn to_local(&self, ray: &Ray, t: f64) -> Vector {
+        let step = Vector::exact(ray.dir).times(&Real::exact(t));
+        let beside = Vector::exact(ray.origin).plus(&step).minus(&self.origin);
+        Vector(self.rows.each_ref().map(|row| row.dot(&beside)))
+    }
+
     fn pass(&self, surface: &Surface, line: &Local) -> Pass {
         let Polynomial { a, b, c } = surface.along(&line.origin, &line.dir);
         let zero = Real::exact(0.0);
         let blur = |t: &Real| self.blur(surface, line, t);
         if a.is_zero() && b.is_zero() {
             // Parallel: in or out for good, unless it runs as near as rounding.
-            let beside = line.closest();
-            let error = if c.rounded().abs() <= 4.0 * blur(&beside) {
-                f64::INFINITY
-            } else {
-                0.0
-            };
-            let meeting = Meeting { t: beside, error, crosses: false };
-            let meetings = if error > 0.0 { vec![meeting] } else { Vec::new() };
-            return Pass { starts_inside: c <= zero, meetings };
+            let t = line.closest();
+            let is_near = c.rounded().abs() <= 4.0 * blur(&t);
+            let meeting = Meeting { t, error: f64::INFINITY, crosses: false };
+            let meetings = if is_near { vec![meeting] } else { Vec::new() };
+            return Pass { starts_inside: c <= zero, roots: Vec::new(), meetings };
         }
         if a.is_zero() {
             let t = -(c / (&b + &b));
             let error = blur(&t) / b.rounded().abs();
+            let roots = vec![t.clone()];
             let meetings = vec![Meeting { t, error, crosses: true }];
-            return Pass { starts_inside: b > zero, meetings };
+            return Pass { starts_inside: b > zero, roots, meetings };
         }
         let starts_inside = a < zero;
         let discriminant = b.squared() - &a * &c;
+        let mut roots = Vec::new();
         if discriminant > zero {
             let root = discriminant.sqrt();
             let sum = if b < zero { &root - &b } else { -(&root + &b) };
             let (first, second) = (&sum / &a, &c / &sum);
-            let (first, second) =
-                if first < second { (first, second) } else { (second, first) };
-            let gap = (&second - &first).rounded();
-            let meetings = [first, second].map(|t| {
-                let error = 1.1 * blur(&t) / root.rounded();
-                Meeting { t, error, crosses: true }
-            });
+            roots =
+                if first < second { vec![first, second] } else { vec![second, first] };
+            let gap = (&roots[1] - &roots[0]).rounded();
+            let meeting = |t: &Real| {
+                let error = 1.1 * blur(t) / root.rounded();
+                Meeting { t: t.clone(), error, crosses: true }
+            };
+            let meetings: Vec<Meeting> = roots.iter().map(meeting).collect();
             if meetings.iter().any(|meeting| 16.0 * meeting.error < gap) {
-                return Pass { starts_inside, meetings: meetings.to_vec() };
+                return Pass { starts_inside, roots, meetings };
             }
         }
         // The parabola's vertex, and how far above or below the surface the line is there.
@@ -152,12 +200,9 @@ impl Placed {
         let blur = 2.0 * blur(&t);
         let touch = ((height + blur) / a.rounded().abs()).sqrt();
         let meeting = Meeting { t, error: 2.0 * (touch + growth), crosses: false };
-        let meetings = if height <= 16.0 * blur || discriminant > zero {
-            vec![meeting]
-        } else {
-            Vec::new()
-        };
-        Pass { starts_inside, meetings }
+        let touches = height <= 16.0 * blur || !roots.is_empty();
+        let meetings = if touches { vec![meeting] } else { Vec::new() };
+        Pass { starts_inside, roots, meetings }
     }
 
     /// By how much half the value of a surface at a place on a line is uncertain: the length
