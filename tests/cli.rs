@@ -239,17 +239,17 @@ fn volume_counts_what_is_thinner_than_rounding() {
     let desk = Desk::new();
     let slab = |x: &str| {
         format!(
-            "multmatrix([[1, 0, 0, {x}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) cube(size = [1, 9, 9], center = false);"
+            "multmatrix([[1, 0, 0, {x}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) cube(size = [1, 1, 1], center = false);"
         )
     };
-    desk.put("film.csg", &format!("{} {}", slab("0"), slab("1.00000000000002")));
+    desk.put("film.csg", &format!("{} {}", slab("-1"), slab("0.00000000000002")));
     let done = desk.run(&["volume", "film.csg", "-v", "--max-rays", "4000"]);
     let spans = done.out.lines().find(|line| line.starts_with("spans")).expect(&done.out);
     assert!(
         spans.ends_with("of them or of the gaps between shorter than rounding"),
         "{spans}"
     );
-    desk.put("film.csg", &format!("{} {}", slab("0"), slab("1.000001")));
+    desk.put("film.csg", &format!("{} {}", slab("-1"), slab("0.000001")));
     let done = desk.run(&["volume", "film.csg", "-v", "--max-rays", "4000"]);
     assert!(done.out.contains("none of them shorter than rounding"), "{}", done.out);
 }
