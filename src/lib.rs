@@ -80,5 +80,7 @@ pub use mesh::{Mesh, MeshError, OpenEdge};
 pub use op::Op;
 pub use progress::Progress;
 pub use ray::{Crossing, Ray, Sense, Span};
-pub use scene::{CompileError, Leaf, LeafName, Membership, Part, Scene, Tracer};
+pub use scene::{
+    CompileError, CompileOptions, Leaf, LeafName, Membership, Part, Scene, Tracer,
+};
 pub use solid::{Place, Solid, View};

@@ -439,6 +439,16 @@ fn plane_differences_leave_walls_like_any_other() {
 }
 
 #[test]
+fn trees_larger_than_allowed_are_refused() {
+    let desk = Desk::new();
+    let done = desk.run(&["volume", "tube.csg", "--max-nodes", "3"]);
+    assert_eq!(done.code, 2, "{}", done.out);
+    let message = "tube.csg: the solid has more than 3 leaves, operators, maps and tags";
+    assert!(done.err.contains(message), "{}", done.err);
+    assert_eq!(desk.run(&["volume", "tube.csg", "--max-nodes", "30"]).code, 0);
+}
+
+#[test]
 fn wrong_usage_is_code_2() {
     let desk = Desk::new();
     for args in [

@@ -9,7 +9,7 @@ use serde::Serialize;
 use solidray::read::{Model, ReadError, ReadErrorKind};
 use solidray::{Scene, Solid};
 
-use super::input::{CompileFault, Reading, compile};
+use super::input::{CompileFault, Reading};
 use super::output::{self, BoundsJson, bounds_json, point};
 use super::report::located;
 use super::{Answer, Global};
@@ -59,7 +59,7 @@ impl Check {
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
         let found = self.reading.read_silently(&self.file).and_then(|model| {
-            let scene = compile(&self.file, &model.solid)?;
+            let scene = self.reading.compile(&self.file, &model.solid)?;
             Ok((model, scene))
         });
         let (model, scene) = match found {

@@ -9,7 +9,7 @@ use clap::Args;
 use serde::Serialize;
 use solidray::measure::{self, Comparison, Verdict, Worst};
 
-use super::input::{Reading, compile};
+use super::input::Reading;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, point};
 use super::sampling::{SamplingArgs, positive};
@@ -69,12 +69,19 @@ impl Compare {
         let a = self.reading.read(&self.a, global)?.solid;
         let b = self.reading.read(&self.b, global)?.solid;
         for (file, solid) in [(&self.a, &a), (&self.b, &b)] {
-            compile(file, solid)?;
+            self.reading.compile(file, solid)?;
         }
         let start = Instant::now();
         let meter = Meter::new(global, "comparing", None);
         let sampling = self.sampling.meant();
-        let found = measure::compare(&a, &b, self.tol, &sampling, &|n| meter.tick(n))?;
+        let found = measure::compare_with(
+            &a,
+            &b,
+            self.tol,
+            &sampling,
+            &self.reading.compiling(),
+            &|n| meter.tick(n),
+        )?;
         drop(meter);
         let seconds = start.elapsed().as_secs_f64();
         if global.json {

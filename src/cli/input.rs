@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 use solidray::read::{self, Curves, Format, Model, ReadOptions};
-use solidray::{CompileError, Scene, Solid};
+use solidray::{CompileError, CompileOptions, Scene, Solid};
 
 use super::Global;
 use super::numbers::Numbers;
@@ -25,6 +25,10 @@ pub(super) struct Reading {
     /// The OpenSCAD program that converts .scad files [default: openscad on PATH]
     #[arg(long, value_name = "PROGRAM", help_heading = "Reading")]
     openscad: Option<PathBuf>,
+    /// The largest tree that is compiled: leaves, operators, maps and tags, with what
+    /// occurs more than once counted as often
+    #[arg(long, value_name = "N", default_value_t = CompileOptions::default().most_nodes, help_heading = "Reading")]
+    max_nodes: u64,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
@@ -105,12 +109,27 @@ impl Reading {
         let model = self.read(file, global)?;
         let read_seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let scene = compile(file, &model.solid)?;
+        let scene = self.compile(file, &model.solid)?;
         let compile_seconds = start.elapsed().as_secs_f64();
         if scene.bounds().is_empty() && !global.quiet {
             report::note(&format!("warning: {}: the model is empty", file.display()));
         }
         Ok(Loaded { scene, read_seconds, compile_seconds })
+    }
+
+    /// Compiles a model; an error begins with the file's name.
+    pub(super) fn compile(
+        &self,
+        file: &Path,
+        solid: &Solid,
+    ) -> Result<Scene, CompileFault> {
+        Scene::compile_with(solid, &self.compiling())
+            .map_err(|error| CompileFault { file: file.display().to_string(), error })
+    }
+
+    /// What was chosen for compiling.
+    pub(super) fn compiling(&self) -> CompileOptions {
+        CompileOptions { most_nodes: self.max_nodes }
     }
 }
 
@@ -131,12 +150,6 @@ impl std::fmt::Display for CompileFault {
             if message.starts_with(|c: char| c.is_ascii_digit()) { "" } else { " " };
         write!(f, "{}:{gap}{message}", self.file)
     }
-}
-
-/// Compiles a model; an error begins with the file's name.
-pub(super) fn compile(file: &Path, solid: &Solid) -> Result<Scene, CompileFault> {
-    Scene::compile(solid)
-        .map_err(|error| CompileFault { file: file.display().to_string(), error })
 }
 
 /// Calls `each` with the numbers on every line of standard input that has any; `#` begins a

@@ -7,7 +7,7 @@ use super::lattice::{Beam, Round, Sampling, Tally, rounds, student};
 use super::volume::{Chords, estimate, is_nothing};
 use crate::progress::Progress;
 use crate::ray::Ray;
-use crate::scene::{CompileError, Scene, Tracer};
+use crate::scene::{CompileError, CompileOptions, Scene, Tracer};
 use crate::solid::Solid;
 
 /// Two solids side by side. Volumes are in cubic model units.
@@ -88,11 +88,27 @@ pub fn compare(
     sampling: &Sampling,
     progress: Progress<'_>,
 ) -> Result<Comparison, CompileError> {
+    compare_with(a, b, tolerance, sampling, &CompileOptions::default(), progress)
+}
+
+/// Compares as [`compare`] does two solids that are compiled in another way.
+///
+/// # Errors
+///
+/// If one of them, or a difference, cannot be compiled.
+pub fn compare_with(
+    a: &Solid,
+    b: &Solid,
+    tolerance: f64,
+    sampling: &Sampling,
+    options: &CompileOptions,
+    progress: Progress<'_>,
+) -> Result<Comparison, CompileError> {
     let scenes = [
-        Scene::compile(a)?,
-        Scene::compile(b)?,
-        Scene::compile(&(a.clone() - b.clone()))?,
-        Scene::compile(&(b.clone() - a.clone()))?,
+        Scene::compile_with(a, options)?,
+        Scene::compile_with(b, options)?,
+        Scene::compile_with(&(a.clone() - b.clone()), options)?,
+        Scene::compile_with(&(b.clone() - a.clone()), options)?,
     ];
     let bounds = scenes[0].bounds().hull(scenes[1].bounds());
     let nothing = scenes.each_ref().map(is_nothing);

@@ -5,7 +5,7 @@ mod estimate;
 mod lattice;
 mod volume;
 
-pub use compare::{Comparison, Verdict, Worst, compare};
+pub use compare::{Comparison, Verdict, Worst, compare, compare_with};
 pub use estimate::{Estimate, Method};
 pub use lattice::Sampling;
 pub use volume::{volume, volume_with};

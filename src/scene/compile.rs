@@ -6,6 +6,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::intern::{Extent, intern};
+use super::options::CompileOptions;
 use super::program::{Combine, Literal, Program};
 use super::{Part, Scene};
 use crate::aabb::Aabb;
@@ -46,13 +47,18 @@ pub enum CompileError {
     )]
     Unbounded,
     /// Written out, with shared subtrees as often as they occur, the tree has more nodes
-    /// than memory has room for.
-    #[error("the solid has more than {MOST_NODES} leaves, operators, maps and tags")]
-    TooLarge,
+    /// than [`CompileOptions::most_nodes`] allows.
+    #[error("the solid has more than {most_nodes} leaves, operators, maps and tags")]
+    TooLarge {
+        /// How many were allowed.
+        most_nodes: u64,
+    },
 }
 
-/// The largest tree that is compiled: some 40 GB.
-const MOST_NODES: u64 = 1 << 27;
+impl CompileError {
+    /// The tree has more nodes than can be numbered, whatever is allowed.
+    const BEYOND_NUMBERS: Self = Self::TooLarge { most_nodes: u32::MAX as u64 };
+}
 
 /// A leaf as errors name it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -119,9 +125,13 @@ struct Compiler {
 type PartKey = (Option<Arc<str>>, Option<[u32; 4]>);
 
 /// Visits the tree in its own order with a list of what is left, not by recursion.
-pub(super) fn compile(solid: &Solid) -> Result<Scene, CompileError> {
-    if solid.size() > MOST_NODES {
-        return Err(CompileError::TooLarge);
+pub(super) fn compile(
+    solid: &Solid,
+    options: &CompileOptions,
+) -> Result<Scene, CompileError> {
+    let &CompileOptions { most_nodes } = options;
+    if solid.size() > most_nodes {
+        return Err(CompileError::TooLarge { most_nodes });
     }
     let mut compiler = Compiler {
         program: Program::new(),
@@ -157,8 +167,8 @@ pub(super) fn compile(solid: &Solid) -> Result<Scene, CompileError> {
             }
             Kind::Mapped(_) | Kind::Tagged(_) => {
                 let inner = contexts[context as usize].inside(&node.kind, complement);
-                let context =
-                    u32::try_from(contexts.len()).map_err(|_| CompileError::TooLarge)?;
+                let context = u32::try_from(contexts.len())
+                    .map_err(|_| CompileError::BEYOND_NUMBERS)?;
                 contexts.push(inner);
                 tasks.extend(node.children.iter().map(|solid| Task {
                     solid,
@@ -178,7 +188,7 @@ pub(super) fn compile(solid: &Solid) -> Result<Scene, CompileError> {
                 let parent = compiler
                     .program
                     .node_below(task.parent, combine)
-                    .ok_or(CompileError::TooLarge)?;
+                    .ok_or(CompileError::BEYOND_NUMBERS)?;
                 let first_task = tasks.len();
                 tasks.extend(node.children.iter().enumerate().map(|(i, solid)| {
                     let subtracted = *op == Op::Difference && i > 0;
@@ -258,7 +268,7 @@ impl Compiler {
         context: &Context,
     ) -> Result<(), CompileError> {
         if self.shapes.len() >= u32::MAX as usize {
-            return Err(CompileError::TooLarge);
+            return Err(CompileError::BEYOND_NUMBERS);
         }
         self.program.expect_child(task.parent);
         self.literals.push(Literal { parent: task.parent, complement: task.complement });

@@ -5,6 +5,7 @@ mod classify;
 mod compile;
 mod depart;
 mod intern;
+mod options;
 mod program;
 mod trace;
 
@@ -20,6 +21,7 @@ use crate::shape::{Line, Shape, Spot};
 use crate::solid::{Place, Solid};
 pub use classify::Membership;
 pub use compile::{CompileError, LeafName};
+pub use options::CompileOptions;
 use program::{Literal, Program};
 pub use trace::Tracer;
 
@@ -76,14 +78,26 @@ pub struct Leaf<'a> {
 }
 
 impl Scene {
-    /// Flattens, checks and indexes a solid.
+    /// Flattens, checks and indexes a solid, with the default [`CompileOptions`].
     ///
     /// # Errors
     ///
     /// Names the first leaf whose sizes or map make no solid, or says that the solid is not
     /// bounded.
     pub fn compile(solid: &Solid) -> Result<Self, CompileError> {
-        compile::compile(solid)
+        Self::compile_with(solid, &CompileOptions::default())
+    }
+
+    /// Flattens, checks and indexes a solid.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scene::compile`], and if the options do not allow it.
+    pub fn compile_with(
+        solid: &Solid,
+        options: &CompileOptions,
+    ) -> Result<Self, CompileError> {
+        compile::compile(solid, options)
     }
 
     /// A box around the solid, empty if the solid plainly is. It is found from the boxes of
