@@ -8,7 +8,7 @@
 mod support;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, dvec3};
-use solidray::{Mesh, Ray, Scene, Solid, Span};
+use solidray::{Mesh, Ray, Scene, Solid, Span, View};
 use support::dice::Dice;
 use support::{assert_spans_valid, ends, ends_in, meshes, scene};
 
@@ -203,6 +203,15 @@ fn rotated_boxes_with_a_common_face_are_one_span() {
     }
 }
 
+/// The same solid, its mesh another one in memory.
+fn again(leaf: &Solid) -> Solid {
+    match leaf.view() {
+        View::Mapped(map, child) => again(child).mapped(*map),
+        View::Mesh(mesh) => Solid::mesh(Mesh::clone(mesh)),
+        View::Primitive(_) | View::Boolean(..) | View::Tagged(_) | _ => leaf.clone(),
+    }
+}
+
 /// The same solid by another product of maps: what is left of it, in all of a thousand
 /// cases, is nothing, seen along lines through its corners and faces.
 #[test]
@@ -217,6 +226,7 @@ fn copies_by_differently_written_maps_leave_nothing() {
         Solid::paraboloid(1.5, 2.0),
         Solid::hyperboloid_of_one_sheet(1.0, 1.6, 2.0),
         Solid::hyperboloid_of_two_sheets(0.5, 0.8, 3.0),
+        Solid::mesh(meshes::jittered(&meshes::icosphere(1), 0.1, 5)),
     ];
     for i in 0..1000 {
         let (axis, angle, offset) =
@@ -224,7 +234,7 @@ fn copies_by_differently_written_maps_leave_nothing() {
         let factor = dvec3(dice.within(0.3, 3.0), dice.within(-3.0, -0.3), 1.5);
         let leaf = leaves[i % leaves.len()].clone().scaled(factor);
         let once = leaf.clone().rotated(axis, angle).translated(offset);
-        let thrice = leaf
+        let thrice = again(&leaf)
             .translated(DVec3::ONE)
             .rotated(axis, 0.3 * angle)
             .rotated(axis, 0.7 * angle)

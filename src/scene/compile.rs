@@ -5,16 +5,18 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use super::intern::{Extent, intern};
+use super::copies::Meshes;
+use super::intern::Surfaces;
 use super::options::CompileOptions;
 use super::program::{Combine, Literal, Program};
+use super::sheet::Extent;
 use super::{Part, Scene};
 use crate::aabb::Aabb;
 use crate::bvh::Bvh;
 use crate::color::Color;
 use crate::mesh::Mesh;
 use crate::op::Op;
-use crate::shape::{BadParameter, Chain, IndexedMesh, Placed, Primitive, Shape, Slack};
+use crate::shape::{BadParameter, Chain, Placed, Primitive, Shape, Slack};
 use crate::solid::{Kind, Place, Solid, Tag};
 
 /// Why a solid cannot be compiled.
@@ -118,7 +120,7 @@ struct Compiler {
     slacks: Vec<Slack>,
     part_list: Vec<Part>,
     part_numbers: HashMap<PartKey, u32>,
-    meshes: HashMap<*const Mesh, Arc<IndexedMesh>>,
+    meshes: Meshes,
 }
 
 /// A name, and the bits of a colour.
@@ -145,7 +147,7 @@ pub(super) fn compile(
         slacks: Vec::new(),
         part_list: Vec::new(),
         part_numbers: HashMap::new(),
-        meshes: HashMap::new(),
+        meshes: Meshes::default(),
     };
     let mut contexts = vec![Context {
         chain: Chain::NOTHING,
@@ -246,11 +248,7 @@ impl Compiler {
         task: &Task<'_>,
         context: &Context,
     ) -> Result<(), CompileError> {
-        let indexed = self
-            .meshes
-            .entry(Arc::as_ptr(mesh))
-            .or_insert_with(|| Arc::new(IndexedMesh::new(mesh.clone())))
-            .clone();
+        let indexed = self.meshes.indexed(mesh);
         let placed =
             Shape::place_mesh(indexed, &context.chain).map_err(|determinant| {
                 CompileError::SingularMap {
@@ -312,7 +310,7 @@ impl Compiler {
             let leaves = self.boxes.iter().zip(&self.conditions);
             let extents: Vec<Extent> =
                 leaves.map(|(leaf, &c)| Extent::new(leaf, &reach, c)).collect();
-            intern(&mut self.shapes, &extents);
+            Surfaces::new(&mut self.shapes, &extents).hand_out(&mut self.shapes);
         }
         let cutters: Vec<(u32, Aabb)> = self
             .literals

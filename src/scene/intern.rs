@@ -2,98 +2,190 @@
 //!
 //! Two leaves can have a face in common and yet, because their maps were multiplied out in
 //! another order, disagree on it by a rounding error. Then a line would find a gap or a film
-//! there that nobody meant. So planes and curved walls that cannot be told apart are
-//! collected in groups, and all of a group take over the numbers of one of them. After that
-//! they cross a line at equal `t`, and the sweep needs no tolerance. The one is chosen by its
-//! numbers, not by its place in the tree, so that operands can change places without
-//! changing a bit.
+//! there that nobody meant. So surfaces that cannot be told apart are collected in groups,
+//! and all of a group take over the numbers of one of them, its leader. After that they
+//! cross a line at equal `t`, and the sweep needs no tolerance. Of meshes it is the maps of
+//! equal meshes that are made equal, not single faces.
 //!
 //! Surfaces are the same if nowhere on the leaf they are farther apart than what rounding can
-//! have done ([`ROUNDING`]). The distance is to the first of its group, never to a neighbour,
-//! so groups do not creep.
+//! have done ([`Extent::rounding`]). The distance is to the leader, never to a neighbour, so
+//! groups do not creep. Leaves are gone through from the largest to the smallest, so that the
+//! leader is the one whose direction is known best: another's plane may fit it on a small
+//! leaf and miss it at the far end of a large one. Leaves of one size come in the order of
+//! their numbers, so that operands can change places without changing a bit.
 
 use std::collections::BTreeMap;
 use std::ops::Bound::Included;
 
-use glam::DVec3;
-
-use crate::aabb::Aabb;
-use crate::shape::{Plane, Shape, Wall};
-
-/// How far rounding moves a surface, in units of the largest coordinate of its leaf times
-/// the condition number of its map.
-///
-/// A product of two maps rounds by at most 4 u in each entry, u = 2⁻⁵³, the inverse and the
-/// plane's equation by some 16 u more; this leaves room for a dozen nested maps.
-const ROUNDING: f64 = 64.0 * 0.5 * f64::EPSILON;
+use super::sheet::{Extent, Sheet};
+use crate::shape::{Plane, Polyhedron, Shape, Wall};
 
 /// One leaf whose map is all but singular must not make all others look alike: surfaces of
 /// leaves this many times less precise than a leaf are not considered for it.
 const SLACK: f64 = 1024.0;
 
-/// What a leaf says of its own precision.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Extent {
-    center: DVec3,
-    radius: f64,
-    rounding: f64,
+/// The surfaces of all leaves, and which of them are one.
+pub(super) struct Surfaces {
+    pub(super) planes: Sheets<Plane>,
+    pub(super) walls: Sheets<Wall>,
+    meshes: Sheets<Polyhedron>,
 }
 
-impl Extent {
-    /// Of a leaf within `bounds`, or within `scene` if it has no bounds itself.
-    pub(super) fn new(bounds: &Aabb, scene: &Aabb, condition: f64) -> Self {
-        let near = if bounds.is_bounded() { *bounds } else { *scene };
-        let far = near.min.abs().max(near.max.abs()).max_element();
-        let radius = 0.5 * near.size().length();
-        Self { center: near.center(), radius, rounding: ROUNDING * condition * far }
+/// The surfaces of one kind.
+pub(super) struct Sheets<T> {
+    /// The largest coordinate of the scene.
+    pub(super) scale: f64,
+    /// In the order of leaves and faces.
+    pub(super) faces: Vec<Face<T>>,
+    /// The place of each in the order that does not depend on the leaves' order.
+    pub(super) rank: Vec<u32>,
+    /// For each the one whose numbers it takes over: the first of its group.
+    pub(super) leader: Vec<u32>,
+}
+
+/// A surface and whose it is.
+#[derive(Clone)]
+pub(super) struct Face<T> {
+    pub(super) surface: T,
+    pub(super) leaf: u32,
+    pub(super) face: u32,
+}
+
+impl Surfaces {
+    /// Of these leaves, with what coincides in groups.
+    pub(super) fn new(shapes: &mut [Shape], extents: &[Extent]) -> Self {
+        let (mut planes, mut walls, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
+        for (leaf, shape) in (0..).zip(shapes) {
+            let before = u32::from(matches!(shape, Shape::Quadric(_)));
+            let own = (before..).zip(shape.planes_mut());
+            planes.extend(own.map(|(face, &mut surface)| Face { surface, leaf, face }));
+            let own =
+                shape.wall_mut().map(|&mut surface| Face { surface, leaf, face: 0 });
+            walls.extend(own);
+            if let Shape::Polyhedron(mesh) = shape {
+                meshes.push(Face { surface: mesh.clone(), leaf, face: 0 });
+            }
+        }
+        Self {
+            planes: Sheets::new(planes, extents),
+            walls: Sheets::new(walls, extents),
+            meshes: Sheets::new(meshes, extents),
+        }
+    }
+
+    /// Gives the leaves their leaders' numbers.
+    pub(super) fn hand_out(self, shapes: &mut [Shape]) {
+        let mut planes = self.planes.led();
+        let mut meshes = self.meshes.led();
+        let walls = self.walls.extended();
+        let mut walls = self.walls.leader.iter().map(|&leader| walls[leader as usize]);
+        for shape in shapes {
+            for (plane, chosen) in shape.planes_mut().iter_mut().zip(&mut planes) {
+                let same_way = plane.normal.dot(chosen.normal) > 0.0;
+                *plane = Plane { above: plane.above == same_way, ..*chosen };
+            }
+            for (wall, chosen) in shape.wall_mut().into_iter().zip(&mut walls) {
+                *wall = chosen;
+            }
+            if let Shape::Polyhedron(mesh) = shape {
+                for (mesh, chosen) in [mesh].into_iter().zip(&mut meshes) {
+                    mesh.to_local = chosen.to_local;
+                }
+            }
+        }
     }
 }
 
-/// Gives equal bits to the surfaces that coincide.
-pub(super) fn intern(shapes: &mut [Shape], extents: &[Extent]) {
-    let far = extents.iter().map(|e| e.center.length() + e.radius).fold(0.0, f64::max);
-    let (mut planes, mut walls) = (Table::new(far), Table::new(far));
-    let (mut plane_groups, mut wall_groups) = (Vec::new(), Vec::new());
-    for (shape, extent) in shapes.iter_mut().zip(extents) {
-        // Faces of one leaf are never each other's: a leaf as thin as rounding would vanish.
-        let before = planes.groups.len();
-        for plane in shape.planes_mut() {
-            plane_groups.push(planes.join_plane(plane, extent, before));
+impl<T: Sheet> Sheets<T> {
+    fn new(faces: Vec<Face<T>>, extents: &[Extent]) -> Self {
+        let mut order: Vec<u32> = (0..).zip(&faces).map(|(i, _)| i).collect();
+        order.sort_by(|&a, &b| {
+            let [a, b] = [a, b].map(|i| &faces[i as usize]);
+            let [near, far] = [a, b].map(|face| extents[face.leaf as usize]);
+            far.radius
+                .total_cmp(&near.radius)
+                .then_with(|| compare(&a.surface.numbers(), &b.surface.numbers()))
+                .then_with(|| compare(&near.center.to_array(), &far.center.to_array()))
+                .then_with(|| near.rounding.total_cmp(&far.rounding))
+        });
+        let mut table = Table::new(extents);
+        let mut sheets = Self {
+            scale: table.scale,
+            rank: vec![0; faces.len()],
+            leader: vec![u32::MAX; faces.len()],
+            faces,
+        };
+        for (rank, i) in (0..).zip(order) {
+            sheets.rank[i as usize] = rank;
+            sheets.gather(i, &mut table, extents);
         }
-        if let Some(wall) = shape.wall_mut() {
-            wall_groups.push(walls.join_wall(wall, extent));
-        }
+        sheets
     }
-    let mut plane_groups = plane_groups.into_iter();
-    let mut wall_groups = wall_groups.into_iter();
-    for shape in shapes {
-        for (plane, group) in shape.planes_mut().iter_mut().zip(&mut plane_groups) {
-            let chosen = &planes.groups[group].chosen;
-            let same_way = plane.normal.dot(chosen.normal) > 0.0;
-            *plane = Plane { above: plane.above == same_way, ..*chosen };
+
+    /// Puts a surface into the first group whose leader it coincides with, or a new one.
+    ///
+    /// Faces of one leaf are never each other's: a leaf as thin as rounding would vanish.
+    fn gather(&mut self, i: u32, table: &mut Table, extents: &[Extent]) {
+        let Face { surface, leaf, .. } = &self.faces[i as usize];
+        let extent = &extents[*leaf as usize];
+        let key = surface.key(table.scale);
+        let width = surface.key_width(SLACK * extent.rounding, extent, table.scale);
+        let mut near = table.near(surface.class(), key, width);
+        near.sort_unstable_by_key(|&leader| self.rank[leader as usize]);
+        let found = near.into_iter().find(|&leader| {
+            let other = &self.faces[leader as usize];
+            let rounding = extent.rounding + extents[other.leaf as usize].rounding;
+            surface.distance(&other.surface, extent) <= rounding
+                && self.of_leaf(i).all(|own| self.leader[own as usize] != leader)
+        });
+        if found.is_none() {
+            table.add(surface.class(), key, i);
         }
-        for (wall, group) in shape.wall_mut().into_iter().zip(&mut wall_groups) {
-            *wall = walls.groups[group].chosen;
-        }
+        self.leader[i as usize] = found.unwrap_or(i);
+    }
+
+    /// The surfaces of the leaf of one of them.
+    pub(super) fn of_leaf(&self, i: u32) -> impl Iterator<Item = u32> {
+        let leaf = self.faces[i as usize].leaf;
+        let is_own = move |&k: &u32| {
+            self.faces.get(k as usize).is_some_and(|other| other.leaf == leaf)
+        };
+        (0..i).rev().take_while(is_own).chain((i..).take_while(is_own))
+    }
+
+    /// The surface that one takes over.
+    pub(super) fn led_by(&self, i: u32) -> &T {
+        &self.faces[self.leader[i as usize] as usize].surface
+    }
+
+    fn led(&self) -> impl Iterator<Item = &T> {
+        (0..).zip(&self.faces).map(|(i, _)| self.led_by(i))
     }
 }
 
-/// The groups so far, sorted by a number that differs little between equal surfaces.
-struct Table<T> {
+impl Sheets<Wall> {
+    /// All walls, the leaders long enough for all that they lead.
+    fn extended(&self) -> Vec<Wall> {
+        let mut walls: Vec<Wall> = self.faces.iter().map(|face| face.surface).collect();
+        for (face, &leader) in self.faces.iter().zip(&self.leader) {
+            let wall = &mut walls[leader as usize];
+            *wall = wall.extended_by(&face.surface);
+        }
+        walls
+    }
+}
+
+/// An order of lists of numbers.
+fn compare(a: &[f64], b: &[f64]) -> std::cmp::Ordering {
+    let different = a.iter().zip(b).map(|(x, y)| x.total_cmp(y)).find(|o| o.is_ne());
+    different.unwrap_or(std::cmp::Ordering::Equal)
+}
+
+/// The leaders so far, sorted by a number that differs little between equal surfaces.
+struct Table {
     /// The largest coordinate.
     scale: f64,
-    keys: BTreeMap<Key, Vec<usize>>,
-    groups: Vec<Group<T>>,
-}
-
-/// Surfaces that coincide.
-struct Group<T> {
-    /// The first one, with which the others were compared.
-    first: T,
-    /// The rounding of its leaf.
-    rounding: f64,
-    /// The one whose numbers all take over.
-    chosen: T,
+    keys: BTreeMap<(usize, Key), Vec<u32>>,
 }
 
 /// A float in its natural order.
@@ -114,101 +206,25 @@ impl Ord for Key {
     }
 }
 
-/// No direction in which models have many surfaces: √0.3, √0.1, √0.6.
-const MIXED: DVec3 = DVec3::new(
-    0.547_722_557_505_166_1,
-    0.316_227_766_016_837_94,
-    0.774_596_669_241_483_4,
-);
-
-impl<T: Copy> Table<T> {
-    fn new(scale: f64) -> Self {
-        Self { scale, keys: BTreeMap::new(), groups: Vec::new() }
+impl Table {
+    fn new(extents: &[Extent]) -> Self {
+        let scale =
+            extents.iter().map(|e| e.center.length() + e.radius).fold(0.0, f64::max);
+        Self { scale, keys: BTreeMap::new() }
     }
 
-    /// The entries whose key is within `width` of `key`, oldest first.
-    fn near(&self, key: f64, width: f64) -> Vec<usize> {
+    /// The leaders whose key is within `width` of `key`.
+    fn near(&self, class: usize, key: f64, width: f64) -> Vec<u32> {
         if !width.is_finite() || !key.is_finite() {
             // Numbers too large to compare are near nothing.
             return Vec::new();
         }
-        let range = (Included(Key(key - width)), Included(Key(key + width)));
-        let mut found: Vec<usize> =
-            self.keys.range(range).flat_map(|(_, v)| v).copied().collect();
-        found.sort_unstable();
-        found
+        let range =
+            (Included((class, Key(key - width))), Included((class, Key(key + width))));
+        self.keys.range(range).flat_map(|(_, leaders)| leaders).copied().collect()
     }
 
-    fn add(&mut self, key: f64, surface: T, rounding: f64) -> usize {
-        let number = self.groups.len();
-        self.groups.push(Group { first: surface, rounding, chosen: surface });
-        self.keys.entry(Key(key)).or_default().push(number);
-        number
-    }
-}
-
-impl Table<Plane> {
-    /// The group of a plane: the first one with which it coincides, or a new one. Groups
-    /// from `before` on are of the same leaf.
-    fn join_plane(&mut self, plane: &Plane, extent: &Extent, before: usize) -> usize {
-        let key = plane.normal.dot(MIXED) + plane.offset / self.scale;
-        // A turn by an angle moves the plane by that times the radius of the leaf.
-        let width =
-            8.0 * SLACK * extent.rounding * (1.0 / extent.radius + 1.0 / self.scale);
-        for sign in [1.0, -1.0] {
-            for number in self.near(sign * key, width) {
-                let Group { first, rounding, chosen } = &mut self.groups[number];
-                let apart =
-                    distance(plane, sign * first.normal, sign * first.offset, extent);
-                if number < before && apart <= extent.rounding + *rounding {
-                    let numbers =
-                        |p: &Plane| [p.normal.x, p.normal.y, p.normal.z, p.offset];
-                    if comes_before(&numbers(plane), &numbers(chosen)) {
-                        *chosen = *plane;
-                    }
-                    return number;
-                }
-            }
-        }
-        self.add(key, *plane, extent.rounding)
-    }
-}
-
-/// An order of lists of numbers.
-fn comes_before(a: &[f64], b: &[f64]) -> bool {
-    let different = a.iter().zip(b).map(|(x, y)| x.total_cmp(y)).find(|o| o.is_ne());
-    different == Some(std::cmp::Ordering::Less)
-}
-
-/// At most how far from another plane this one is, anywhere on the leaf.
-fn distance(plane: &Plane, normal: DVec3, offset: f64, extent: &Extent) -> f64 {
-    let height =
-        (plane.normal.dot(extent.center) - plane.offset) / plane.normal.length_squared();
-    let foot = extent.center - height * plane.normal;
-    let apart = (normal.dot(foot) - offset).abs() / normal.length();
-    let turned = (normal.normalize() - plane.normal.normalize()).length();
-    // A face is at most two radii wide, however far from it the middle of the leaf is.
-    apart + 2.0 * turned * extent.radius
-}
-
-impl Table<Wall> {
-    /// The group of a wall: the first one with which it coincides, or a new one.
-    fn join_wall(&mut self, wall: &Wall, extent: &Extent) -> usize {
-        let key = wall.landmark(DVec3::ZERO).dot(MIXED) / self.scale;
-        // The landmark of a slender wall moves more than the wall itself.
-        let width = 8.0 * SLACK * extent.rounding * wall.slenderness() / self.scale;
-        for number in self.near(key, width) {
-            let Group { first, rounding, chosen } = &mut self.groups[number];
-            if wall.distance(first) <= extent.rounding + *rounding {
-                let wins = comes_before(&wall.numbers(), &chosen.numbers());
-                *chosen = if wins {
-                    wall.extended_by(chosen)
-                } else {
-                    chosen.extended_by(wall)
-                };
-                return number;
-            }
-        }
-        self.add(key, *wall, extent.rounding)
+    fn add(&mut self, class: usize, key: f64, leader: u32) {
+        self.keys.entry((class, Key(key))).or_default().push(leader);
     }
 }

@@ -3,10 +3,12 @@
 mod certainty;
 mod classify;
 mod compile;
+mod copies;
 mod depart;
 mod intern;
 mod options;
 mod program;
+mod sheet;
 mod trace;
 
 use std::sync::Arc;

@@ -59,7 +59,7 @@ impl IndexedMesh {
 #[derive(Clone, Debug)]
 pub(crate) struct Polyhedron {
     mesh: Arc<IndexedMesh>,
-    to_local: ToLocal,
+    pub(crate) to_local: ToLocal,
 }
 
 impl Polyhedron {
@@ -72,6 +72,28 @@ impl Polyhedron {
         let mesh = &mesh.mesh;
         let used = mesh.faces().iter().flatten();
         Aabb::around(used.map(|&i| frame.point(mesh.points()[i as usize])))
+    }
+
+    /// A number that copies of one mesh share and others do not.
+    pub(crate) fn mesh_address(&self) -> usize {
+        Arc::as_ptr(&self.mesh).addr()
+    }
+
+    /// The middle of the mesh's box, in the world.
+    pub(crate) fn middle(&self) -> DVec3 {
+        let middle = self.mesh.faces.bounds().center();
+        self.to_local.origin + self.to_local.linear_to_world() * middle
+    }
+
+    /// At most how far any point of the mesh is from where another copy has it: affine maps
+    /// differ most at the corners of a box.
+    pub(crate) fn distance(&self, other: &Self) -> f64 {
+        let [ours, theirs] = [self, other].map(|copy| copy.to_local.linear_to_world());
+        let apart = |p: DVec3| {
+            (self.to_local.origin - other.to_local.origin + (ours * p - theirs * p))
+                .length()
+        };
+        self.mesh.faces.bounds().corners().into_iter().map(apart).fold(0.0, f64::max)
     }
 }
 
