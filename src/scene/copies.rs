@@ -12,7 +12,12 @@ use crate::shape::IndexedMesh;
 #[derive(Default)]
 pub(super) struct Meshes {
     by_address: HashMap<*const Mesh, Arc<IndexedMesh>>,
-    by_content: HashMap<u64, Vec<(Arc<Mesh>, Arc<IndexedMesh>)>>,
+    by_content: HashMap<u64, Vec<Known>>,
+}
+
+struct Known {
+    mesh: Arc<Mesh>,
+    indexed: Arc<IndexedMesh>,
 }
 
 impl Meshes {
@@ -21,11 +26,11 @@ impl Meshes {
     pub(super) fn indexed(&mut self, mesh: &Arc<Mesh>) -> Arc<IndexedMesh> {
         let of_content = || {
             let alike = self.by_content.entry(hash(mesh)).or_default();
-            if let Some((_, indexed)) = alike.iter().find(|(other, _)| other == mesh) {
-                return indexed.clone();
+            if let Some(known) = alike.iter().find(|known| known.mesh == *mesh) {
+                return known.indexed.clone();
             }
             let indexed = Arc::new(IndexedMesh::new(mesh.clone()));
-            alike.push((mesh.clone(), indexed.clone()));
+            alike.push(Known { mesh: mesh.clone(), indexed: indexed.clone() });
             indexed
         };
         self.by_address.entry(Arc::as_ptr(mesh)).or_insert_with(of_content).clone()
