@@ -36,6 +36,12 @@ impl Aabb {
         Self::new(self.min.min(other.min), self.max.max(other.max))
     }
 
+    /// The box with its faces this much farther out.
+    #[must_use]
+    pub(crate) fn grown(self, by: f64) -> Self {
+        Self::new(self.min - by, self.max + by)
+    }
+
     /// What two boxes have in common.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {

@@ -81,6 +81,7 @@ pub use op::Op;
 pub use progress::Progress;
 pub use ray::{Crossing, Ray, Sense, Span};
 pub use scene::{
-    CompileError, CompileOptions, Leaf, LeafName, Membership, Part, Scene, Tracer,
+    CompileError, CompileOptions, Leaf, LeafName, Membership, NearMisses, Part, Scene,
+    Tracer, Weld,
 };
 pub use solid::{Place, Solid, View};

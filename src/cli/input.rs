@@ -25,6 +25,10 @@ pub(super) struct Reading {
     /// The OpenSCAD program that converts .scad files [default: openscad on PATH]
     #[arg(long, value_name = "PROGRAM", help_heading = "Reading")]
     openscad: Option<PathBuf>,
+    /// Make one of surfaces no farther apart than this anywhere on a leaf, measured square
+    /// to them; `check` says which length a model wants
+    #[arg(long, value_name = "LENGTH", default_value_t = 0.0, value_parser = length, help_heading = "Reading")]
+    weld: f64,
     /// The largest tree that is compiled: leaves, operators, maps and tags, with what
     /// occurs more than once counted as often
     #[arg(long, value_name = "N", default_value_t = CompileOptions::default().most_nodes, help_heading = "Reading")]
@@ -59,6 +63,14 @@ impl From<FormatArg> for Format {
             FormatArg::Stl => Self::Stl,
             FormatArg::Off => Self::Off,
         }
+    }
+}
+
+/// A finite number that is not below zero.
+fn length(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
+        Ok(_) | Err(_) => Err(format!("`{text}` is not a finite length of at least 0")),
     }
 }
 
@@ -129,7 +141,7 @@ impl Reading {
 
     /// What was chosen for compiling.
     pub(super) fn compiling(&self) -> CompileOptions {
-        CompileOptions { most_nodes: self.max_nodes }
+        CompileOptions { weld: self.weld, most_nodes: self.max_nodes }
     }
 }
 

@@ -10,13 +10,14 @@ use super::intern::Surfaces;
 use super::options::CompileOptions;
 use super::program::{Combine, Literal, Program};
 use super::sheet::Extent;
-use super::{Part, Scene};
+use super::weld::{NearMisses, Refusal, Weld, rounded_up};
+use super::{Part, Scene, digits};
 use crate::aabb::Aabb;
 use crate::bvh::Bvh;
 use crate::color::Color;
 use crate::mesh::Mesh;
 use crate::op::Op;
-use crate::shape::{BadParameter, Chain, Placed, Primitive, Shape, Slack};
+use crate::shape::{BadParameter, Chain, Placed, Plane, Primitive, Shape, Slack};
 use crate::solid::{Kind, Place, Solid, Tag};
 
 /// Why a solid cannot be compiled.
@@ -48,6 +49,44 @@ pub enum CompileError {
         "the solid is not bounded: a half-space needs an intersection with something bounded"
     )]
     Unbounded,
+    /// The weld is no length.
+    #[error("the weld is {weld}, which is not a finite length of at least zero")]
+    BadWeld {
+        /// What was asked for.
+        weld: f64,
+    },
+    /// The weld joins surfaces in turn of which some are too far apart to be one.
+    #[error(
+        "{}, {} and {} have surfaces that nearly coincide in turn, but the first and the \
+         last are {apart:.2e} apart, farther than the weld of {weld}; {}",
+        leaves[0], leaves[1], leaves[2], Advice(*fine)
+    )]
+    ChainOfWelds {
+        /// The first, one between and the last.
+        leaves: Box<[LeafName; 3]>,
+        /// How far the surfaces of the first and the last are apart.
+        apart: f64,
+        /// What was asked for.
+        weld: f64,
+        /// A smaller weld that is not refused; zero if only that is not.
+        fine: f64,
+    },
+    /// The weld joins two faces of one leaf by way of another's.
+    #[error(
+        "a weld of {weld} joins two faces of {}, which are {apart:.2e} apart, by way of {}; \
+         {}",
+        leaves[0], leaves[1], Advice(*fine)
+    )]
+    WeldOfThinLeaf {
+        /// The leaf, and the other.
+        leaves: Box<[LeafName; 2]>,
+        /// How far apart its faces are.
+        apart: f64,
+        /// What was asked for.
+        weld: f64,
+        /// A smaller weld that is not refused; zero if only that is not.
+        fine: f64,
+    },
     /// Written out, with shared subtrees as often as they occur, the tree has more nodes
     /// than [`CompileOptions::most_nodes`] allows.
     #[error("the solid has more than {most_nodes} leaves, operators, maps and tags")]
@@ -88,6 +127,19 @@ impl std::fmt::Display for LeafName {
     }
 }
 
+/// Which weld to ask for instead.
+struct Advice(f64);
+
+impl std::fmt::Display for Advice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.0 > 0.0 {
+            write!(f, "a weld of {} would do", self.0)
+        } else {
+            f.write_str("no smaller one joins anything")
+        }
+    }
+}
+
 /// What a subtree inherits from the maps and tags above it.
 #[derive(Clone)]
 struct Context {
@@ -123,15 +175,38 @@ struct Compiler {
     meshes: Meshes,
 }
 
+/// Where the leaves of a solid are that can matter.
+struct Outline {
+    extents: Vec<Extent>,
+    /// The leaves' boxes within the solid's reach.
+    boxes: Vec<Aabb>,
+}
+
 /// A name, and the bits of a colour.
 type PartKey = (Option<Arc<str>>, Option<[u32; 4]>);
 
-/// Visits the tree in its own order with a list of what is left, not by recursion.
+/// A scene of a solid.
 pub(super) fn compile(
     solid: &Solid,
     options: &CompileOptions,
 ) -> Result<Scene, CompileError> {
-    let &CompileOptions { most_nodes } = options;
+    visit(solid, options)?.finish(options.weld)
+}
+
+/// What of a solid nearly coincides after it has been compiled.
+pub(super) fn near_misses(
+    solid: &Solid,
+    options: &CompileOptions,
+) -> Result<NearMisses, CompileError> {
+    visit(solid, options)?.near_misses(options.weld, &digits::moved(solid))
+}
+
+/// Visits the tree in its own order with a list of what is left, not by recursion.
+fn visit(solid: &Solid, options: &CompileOptions) -> Result<Compiler, CompileError> {
+    let &CompileOptions { weld, most_nodes } = options;
+    if !(weld.is_finite() && weld >= 0.0) {
+        return Err(CompileError::BadWeld { weld });
+    }
     if solid.size() > most_nodes {
         return Err(CompileError::TooLarge { most_nodes });
     }
@@ -200,8 +275,7 @@ pub(super) fn compile(
             }
         }
     }
-    drop(contexts);
-    compiler.finish()
+    Ok(compiler)
 }
 
 impl Context {
@@ -296,22 +370,121 @@ impl Compiler {
         LeafName { number, kind, name: context.name.clone(), place: context.place }
     }
 
+    /// Where the leaves are that can matter, and how well; `None` if the solid is empty and
+    /// is asked nothing.
+    fn outline(&self) -> Result<Option<Outline>, CompileError> {
+        let reach = self.program.bounds(&self.literals, &self.boxes, &[]);
+        if reach.is_empty() {
+            return Ok(None);
+        }
+        if !reach.is_bounded() {
+            return Err(CompileError::Unbounded);
+        }
+        let leaves = self.boxes.iter().zip(&self.conditions);
+        let extents = leaves.map(|(leaf, &c)| Extent::new(leaf, &reach, c)).collect();
+        let boxes = self.boxes.iter().map(|b| b.intersection(reach)).collect();
+        Ok(Some(Outline { extents, boxes }))
+    }
+
+    /// Makes one of what coincides and what the weld joins; says what that was.
+    fn join(&mut self, weld: f64) -> Result<Vec<Weld>, CompileError> {
+        let Some(Outline { extents, boxes }) = self.outline()? else {
+            return Ok(Vec::new());
+        };
+        let mut surfaces = Surfaces::new(&mut self.shapes, &extents);
+        if weld <= 0.0 {
+            surfaces.hand_out(&mut self.shapes);
+            return Ok(Vec::new());
+        }
+        let welded = surfaces.weld(weld, &extents, &boxes);
+        let (welds, moved) = welded.map_err(|refusal| self.refused(&refusal, weld))?;
+        surfaces.hand_out(&mut self.shapes);
+        for (leaf, by) in (0..).zip(moved).filter(|&(_, by)| by > 0.0) {
+            self.move_box(leaf, by);
+        }
+        Ok(welds)
+    }
+
+    /// Fits the box of a leaf to its surfaces after some have moved by as much as this.
+    ///
+    /// Where surfaces meet at an angle their edge moves farther than they do, by no more than
+    /// the condition number says.
+    fn move_box(&mut self, leaf: usize, by: f64) {
+        let (shape, around) = (&mut self.shapes[leaf], &mut self.boxes[leaf]);
+        if shape.fills_its_bounds() {
+            for Plane { normal, offset, above } in shape.planes_mut() {
+                let axis = normal.abs().max_position();
+                let side = if *above { &mut around.min } else { &mut around.max };
+                side[axis] = *offset;
+            }
+        } else {
+            *around = around.grown(6.0 * self.conditions[leaf] * by);
+        }
+    }
+
+    fn refused(&self, refusal: &Refusal, weld: f64) -> CompileError {
+        let Refusal { leaves, apart, fine } = *refusal;
+        let [first, middle, last] = leaves.map(|leaf| {
+            let i = leaf as usize;
+            LeafName {
+                number: leaf,
+                kind: self.shapes[i].kind(),
+                name: self.part_list[self.parts[i] as usize].name.clone(),
+                place: self.places[i],
+            }
+        });
+        if leaves[0] == leaves[2] {
+            let leaves = Box::new([first, middle]);
+            CompileError::WeldOfThinLeaf { leaves, apart, weld, fine }
+        } else {
+            let leaves = Box::new([first, middle, last]);
+            CompileError::ChainOfWelds { leaves, apart, weld, fine }
+        }
+    }
+
+    /// The pairs that six digits may have parted, and a weld that joins them. That is tried,
+    /// for it may join other things too, and be refused for that.
+    fn near_misses(
+        mut self,
+        weld: f64,
+        moved: &[f64],
+    ) -> Result<NearMisses, CompileError> {
+        /// How often a larger weld is tried.
+        const TRIES: usize = 8;
+        let nothing = NearMisses { pairs: Vec::new(), weld: None };
+        let Some(Outline { extents, boxes }) = self.outline()? else {
+            return Ok(nothing);
+        };
+        let mut surfaces = Surfaces::new(&mut self.shapes, &extents);
+        if weld > 0.0 {
+            let welded = surfaces.weld(weld, &extents, &boxes);
+            welded.map_err(|refusal| self.refused(&refusal, weld))?;
+        }
+        let pairs = surfaces.near_misses(&extents, &boxes, moved);
+        let Some(farthest) = pairs.first() else { return Ok(nothing) };
+        let mut tried = rounded_up(farthest.distance).max(weld);
+        for _ in 0..TRIES {
+            let mut surfaces = Surfaces::new(&mut self.shapes, &extents);
+            let next = match surfaces.weld(tried, &extents, &boxes) {
+                Ok(_) if pairs.iter().all(|pair| surfaces.are_one(pair)) => {
+                    return Ok(NearMisses { pairs, weld: Some(tried) });
+                }
+                Ok(_) => 1.25 * tried,
+                Err(refusal) if refusal.apart > tried => refusal.apart,
+                Err(_) => break,
+            };
+            tried = rounded_up(next);
+        }
+        Ok(NearMisses { pairs, weld: None })
+    }
+
     /// Keeps for the search only what can matter: within the solid's reach, a leaf is as
     /// good as its part inside it, and outside nothing is inside anyway, whatever the
     /// complements are. (For the narrower bounds that would not be true: what cuts them must be
     /// found by lines that pass beside them.)
-    fn finish(mut self) -> Result<Scene, CompileError> {
+    fn finish(mut self, weld: f64) -> Result<Scene, CompileError> {
+        let welds = self.join(weld)?;
         let reach = self.program.bounds(&self.literals, &self.boxes, &[]);
-        if !reach.is_empty() && !reach.is_bounded() {
-            return Err(CompileError::Unbounded);
-        }
-        // An empty solid is asked nothing.
-        if reach.is_bounded() {
-            let leaves = self.boxes.iter().zip(&self.conditions);
-            let extents: Vec<Extent> =
-                leaves.map(|(leaf, &c)| Extent::new(leaf, &reach, c)).collect();
-            Surfaces::new(&mut self.shapes, &extents).hand_out(&mut self.shapes);
-        }
         let cutters: Vec<(u32, Aabb)> = self
             .literals
             .iter()
@@ -343,6 +516,7 @@ impl Compiler {
             subtracted: self.subtracted,
             part_list: self.part_list,
             hierarchy,
+            welds,
         })
     }
 }

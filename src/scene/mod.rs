@@ -5,11 +5,14 @@ mod classify;
 mod compile;
 mod copies;
 mod depart;
+mod digits;
 mod intern;
+mod near;
 mod options;
 mod program;
 mod sheet;
 mod trace;
+mod weld;
 
 use std::sync::Arc;
 
@@ -26,6 +29,7 @@ pub use compile::{CompileError, LeafName};
 pub use options::CompileOptions;
 use program::{Literal, Program};
 pub use trace::Tracer;
+pub use weld::{NearMisses, Weld};
 
 /// A solid made ready for rays. No query on it can fail.
 ///
@@ -52,6 +56,7 @@ pub struct Scene {
     subtracted: Vec<bool>,
     part_list: Vec<Part>,
     hierarchy: Bvh,
+    welds: Vec<Weld>,
 }
 
 /// Leaves that share a name and a colour.
@@ -100,6 +105,30 @@ impl Scene {
         options: &CompileOptions,
     ) -> Result<Self, CompileError> {
         compile::compile(solid, options)
+    }
+
+    /// What [`CompileOptions::weld`] has joined, those farthest apart first: as few pairs as
+    /// it takes. What coincided but for rounding is not among them.
+    pub fn welds(&self) -> &[Weld] {
+        &self.welds
+    }
+
+    /// Surfaces of a solid that nearly coincide when it is compiled, and are farther apart
+    /// than rounding explains but not farther than printing its numbers with six digits may
+    /// have moved them, as OpenSCAD does. Where they do, a ray may find a gap or a film that
+    /// nobody meant.
+    ///
+    /// Numbers with fewer or more digits are taken as exact. Leaves are numbered as in
+    /// [`Scene::compile_with`]. Faces of meshes are not considered.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scene::compile_with`].
+    pub fn near_misses(
+        solid: &Solid,
+        options: &CompileOptions,
+    ) -> Result<NearMisses, CompileError> {
+        compile::near_misses(solid, options)
     }
 
     /// A box around the solid, empty if the solid plainly is. It is found from the boxes of

@@ -1,0 +1,387 @@
+//! Surfaces that do not coincide but were meant to are made one.
+//!
+//! Coincident surfaces have been brought together in groups before ([`super::intern`]). Here
+//! two groups are *linked* if leaves of them touch and their surfaces are nowhere on the
+//! smaller of the two leaves farther apart than the weld. What is linked, directly or
+//! through others, becomes one group under the leader that comes first, the largest. Every
+//! surface of it must be within the weld of that leader on its own leaf: nothing moves
+//! farther than the weld allows. Where that fails the weld is refused, for to join some of a
+//! chain and not others would leave to chance which. Nor may two faces of one leaf get into
+//! one group, for the leaf would be gone.
+//!
+//! None of this depends on the order of the leaves.
+
+use super::intern::{Sheets, Surfaces};
+use super::near::{Cell, overlaps};
+use super::sheet::{Extent, Sheet, foot, outside, width};
+use crate::aabb::Aabb;
+use crate::shape::{Plane, Wall};
+
+/// Two surfaces that nearly coincide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weld {
+    /// The two leaves, as in [`Scene::leaf`](crate::Scene::leaf).
+    pub leaves: [u32; 2],
+    /// The face of each.
+    pub faces: [u32; 2],
+    /// At most how far they are apart, measured square to them, anywhere on the smaller leaf.
+    pub distance: f64,
+}
+
+/// Surfaces that nearly coincide and are not one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NearMisses {
+    /// As few pairs as it takes to join all that nearly coincide, those farthest apart first.
+    pub pairs: Vec<Weld>,
+    /// A weld that makes one of every pair, with which the solid can be compiled, if one was
+    /// found.
+    pub weld: Option<f64>,
+}
+
+/// Two surfaces of different groups, by number, and how far apart they are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Link {
+    /// The distance beyond what rounding explains; the least weld that joins them.
+    needs: f64,
+    /// Which come first by rank.
+    near: u32,
+    far: u32,
+}
+
+/// Why surfaces that are linked cannot be made one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Refusal {
+    /// The leaf of the leader, of one linked with the last, and of the last, which is as far
+    /// from the first as `apart`. If the first is the last, two of its faces would be one.
+    pub(super) leaves: [u32; 3],
+    pub(super) apart: f64,
+    /// A smaller weld that does not fail; perhaps zero.
+    pub(super) fine: f64,
+}
+
+/// How far from where they were given surfaces may be, by leaf.
+pub(super) type Reach<'a> = &'a dyn Fn(u32) -> f64;
+
+/// Beyond this there is no telling where something is, and no need.
+const HUGE: f64 = 1e300;
+
+/// A surface that has a place by which near ones are found.
+pub(super) trait Located: Sheet {
+    /// Three numbers, and by how much they can differ from those of a surface that is within
+    /// twice `moved` of this one on its leaf.
+    fn located(&self, moved: f64, extent: &Extent, scale: f64) -> ([f64; 3], f64);
+}
+
+impl Located for Plane {
+    /// As the key of a plane, but all of the foot.
+    fn located(&self, moved: f64, extent: &Extent, scale: f64) -> ([f64; 3], f64) {
+        let from = outside(scale);
+        let distance = from.distance(extent.center) + extent.radius;
+        (foot(self, from).to_array(), 2.0 * moved * (1.0 + distance / extent.radius))
+    }
+}
+
+impl Located for Wall {
+    fn located(&self, moved: f64, _extent: &Extent, _scale: f64) -> ([f64; 3], f64) {
+        ([width(self), 0.0, 0.0], 2.0 * moved)
+    }
+}
+
+impl Surfaces {
+    /// Makes one of the surfaces that a weld joins; says which, those farthest apart first,
+    /// and how far the surfaces of each leaf have moved.
+    pub(super) fn weld(
+        &mut self,
+        weld: f64,
+        extents: &[Extent],
+        boxes: &[Aabb],
+    ) -> Result<(Vec<Weld>, Vec<f64>), Refusal> {
+        let reach = |_| 0.5 * weld;
+        let mut moved = vec![0.0; boxes.len()];
+        let planes = self.planes.links(extents, boxes, &reach);
+        let walls = self.walls.links(extents, boxes, &reach);
+        let welds = self.welds(&planes, &walls, extents);
+        let joined = self.planes.join(&planes, weld, extents, &mut moved);
+        let joined =
+            joined.and_then(|()| self.walls.join(&walls, weld, extents, &mut moved));
+        match joined {
+            Ok(()) => Ok((welds, moved)),
+            Err(refusal) => {
+                // What is fine for planes may not be for walls, so both are asked in turn.
+                let mut fine = weld;
+                let mut before = f64::INFINITY;
+                while fine < before {
+                    before = fine;
+                    fine = self.planes.largest_fine(&planes, fine, extents);
+                    fine = self.walls.largest_fine(&walls, fine, extents);
+                }
+                Err(Refusal { fine, ..refusal })
+            }
+        }
+    }
+
+    /// Pairs of surfaces that are no farther apart than some have moved: what the two have
+    /// together, by leaf.
+    pub(super) fn near_misses(
+        &self,
+        extents: &[Extent],
+        boxes: &[Aabb],
+        moved: &[f64],
+    ) -> Vec<Weld> {
+        if moved.iter().all(|&by| by <= 0.0) {
+            return Vec::new();
+        }
+        let reach = |leaf: u32| moved[leaf as usize];
+        let planes = self.planes.links(extents, boxes, &reach);
+        let walls = self.walls.links(extents, boxes, &reach);
+        self.welds(&planes, &walls, extents)
+    }
+
+    fn welds(&self, planes: &[Link], walls: &[Link], extents: &[Extent]) -> Vec<Weld> {
+        let mut welds = self.planes.welds(planes, extents);
+        welds.append(&mut self.walls.welds(walls, extents));
+        welds.sort_by(|a, b| {
+            let place = |weld: &Weld| (weld.leaves, weld.faces);
+            b.distance.total_cmp(&a.distance).then_with(|| place(a).cmp(&place(b)))
+        });
+        welds
+    }
+
+    /// Whether two faces are one.
+    pub(super) fn are_one(&self, weld: &Weld) -> bool {
+        self.planes.are_one(weld) || self.walls.are_one(weld)
+    }
+}
+
+impl<T: Located> Sheets<T> {
+    fn are_one(&self, weld: &Weld) -> bool {
+        let find = |k: usize| {
+            let place = (weld.leaves[k], weld.faces[k]);
+            let found = self.faces.binary_search_by_key(&place, |f| (f.leaf, f.face));
+            found.ok().map(|i| self.leader[i])
+        };
+        find(0).is_some() && find(0) == find(1)
+    }
+
+    /// The surfaces of different groups that are within reach of each other, the nearest
+    /// first. The boxes are those of the leaves.
+    pub(super) fn links(
+        &self,
+        extents: &[Extent],
+        boxes: &[Aabb],
+        reach: Reach<'_>,
+    ) -> Vec<Link> {
+        let (mut asked, mut cells) = (Vec::new(), Vec::new());
+        for (i, face) in (0..).zip(&self.faces) {
+            let extent = &extents[face.leaf as usize];
+            let own = reach(face.leaf) + extent.rounding;
+            let (place, spread) = self.led_by(i).located(own, extent, self.scale);
+            let grown = boxes[face.leaf as usize].grown(own);
+            let [low, high] =
+                [(grown.min, -spread), (grown.max, spread)].map(|(p, s)| {
+                    let [a, b, c] = place.map(|x| x + s);
+                    [p.x, p.y, p.z, a, b, c].map(|x| x.clamp(-HUGE, HUGE))
+                });
+            if !grown.is_empty() && !low.into_iter().chain(high).any(f64::is_nan) {
+                asked.push(i);
+                cells.push(Cell { low, high });
+            }
+        }
+        let mut links = Vec::new();
+        overlaps(&cells, |i, k| {
+            let [i, k] = [asked[i], asked[k]];
+            links.extend(self.link(i, k, extents, reach));
+        });
+        links.sort_unstable_by(|a, b| {
+            let ranks =
+                |link: &Link| [link.near, link.far].map(|i| self.rank[i as usize]);
+            a.needs.total_cmp(&b.needs).then_with(|| ranks(a).cmp(&ranks(b)))
+        });
+        links
+    }
+
+    /// The link of two surfaces, if they are within reach of each other.
+    fn link(&self, i: u32, k: u32, extents: &[Extent], reach: Reach<'_>) -> Option<Link> {
+        let [leaf, other] = [i, k].map(|i| self.faces[i as usize].leaf);
+        if leaf == other || self.leader[i as usize] == self.leader[k as usize] {
+            return None;
+        }
+        let first = self.rank[i as usize] < self.rank[k as usize];
+        let (near, far) = if first { (i, k) } else { (k, i) };
+        let needs = self.needs(far, near, extents);
+        let within = reach(leaf) + reach(other);
+        (needs <= within && within > 0.0).then_some(Link { needs, near, far })
+    }
+
+    /// How far one surface is from another beyond what rounding explains.
+    fn needs(&self, i: u32, other: u32, extents: &[Extent]) -> f64 {
+        let [own, far] =
+            [i, other].map(|i| &extents[self.faces[i as usize].leaf as usize]);
+        let distance = self.led_by(i).distance(self.led_by(other), own);
+        (distance - own.rounding - far.rounding).max(0.0)
+    }
+
+    /// How far apart linked surfaces are.
+    fn distance(&self, link: &Link, extents: &[Extent]) -> f64 {
+        let extent = &extents[self.faces[link.far as usize].leaf as usize];
+        self.led_by(link.far).distance(self.led_by(link.near), extent)
+    }
+
+    /// As few links as it takes to join what is linked, the nearest where there is a choice.
+    pub(super) fn welds(&self, links: &[Link], extents: &[Extent]) -> Vec<Weld> {
+        let mut groups = self.leader.clone();
+        let joined = links.iter().filter(|link| self.unite(&mut groups, link));
+        let weld = |link: &Link| {
+            let faces = [link.near, link.far].map(|i| &self.faces[i as usize]);
+            Weld {
+                leaves: faces.map(|face| face.leaf),
+                faces: faces.map(|face| face.face),
+                distance: self.distance(link, extents),
+            }
+        };
+        joined.map(weld).collect()
+    }
+
+    /// Makes one group of the groups of two surfaces; whether there were two. A group's
+    /// number is that of its leader, or one that leads there.
+    fn unite(&self, groups: &mut [u32], link: &Link) -> bool {
+        let [a, b] = [link.near, link.far].map(|i| root(groups, i));
+        let first = self.rank[a as usize] < self.rank[b as usize];
+        let (leader, led) = if first { (a, b) } else { (b, a) };
+        groups[led as usize] = leader;
+        a != b
+    }
+
+    /// Joins what is linked, up to a weld, and says how far each leaf's surfaces have moved.
+    pub(super) fn join(
+        &mut self,
+        links: &[Link],
+        weld: f64,
+        extents: &[Extent],
+        moved: &mut [f64],
+    ) -> Result<(), Refusal> {
+        let leader = self.joined(links, weld, extents)?;
+        for (i, face) in (0..).zip(&self.faces) {
+            if leader[i as usize] != self.leader[i as usize] {
+                let other = &self.faces[leader[i as usize] as usize].surface;
+                let extent = &extents[face.leaf as usize];
+                let by = self.led_by(i).distance(other, extent);
+                let moved = &mut moved[face.leaf as usize];
+                *moved = moved.max(by);
+            }
+        }
+        self.leader = leader;
+        Ok(())
+    }
+
+    /// The leaders of all surfaces when those are joined whose links need no more than the
+    /// weld.
+    fn joined(
+        &self,
+        links: &[Link],
+        weld: f64,
+        extents: &[Extent],
+    ) -> Result<Vec<u32>, Refusal> {
+        let mut groups = self.leader.clone();
+        let links = &links[..links.partition_point(|link| link.needs <= weld)];
+        for link in links {
+            self.unite(&mut groups, link);
+        }
+        let numbers = || (0..).zip(&self.faces).map(|(i, _): (u32, _)| i);
+        for i in numbers() {
+            let leader = root(&mut groups, i);
+            groups[i as usize] = leader;
+        }
+        let mut changed: Vec<u32> = numbers()
+            .filter(|&i| groups[i as usize] != self.leader[i as usize])
+            .collect();
+        changed.sort_unstable_by_key(|&i| self.rank[i as usize]);
+        for i in changed {
+            let leader = groups[i as usize];
+            let leaf = |i: u32| self.faces[i as usize].leaf;
+            let neighbor = || {
+                let link = links.iter().find_map(|link| {
+                    let ends = [link.near, link.far];
+                    let own = self.leader[i as usize];
+                    let is_own = ends.map(|end| self.leader[end as usize] == own);
+                    match is_own {
+                        [true, _] => Some(link.far),
+                        [_, true] => Some(link.near),
+                        [false, false] => None,
+                    }
+                });
+                leaf(link.unwrap_or(leader))
+            };
+            let twin =
+                self.of_leaf(i).find(|&own| own != i && groups[own as usize] == leader);
+            if let Some(twin) = twin {
+                let extent = &extents[leaf(i) as usize];
+                let apart = self.led_by(i).distance(self.led_by(twin), extent);
+                return Err(Refusal {
+                    leaves: [leaf(i), neighbor(), leaf(i)],
+                    apart,
+                    fine: 0.0,
+                });
+            }
+            if self.needs(i, leader, extents) > weld {
+                let extent = &extents[leaf(i) as usize];
+                let apart = self.led_by(i).distance(self.led_by(leader), extent);
+                return Err(Refusal {
+                    leaves: [leaf(leader), neighbor(), leaf(i)],
+                    apart,
+                    fine: 0.0,
+                });
+            }
+        }
+        Ok(groups)
+    }
+
+    /// This weld or, if that fails, a smaller one of three digits that does not, though one
+    /// a little larger does; zero if nothing that joins anything is found.
+    fn largest_fine(&self, links: &[Link], weld: f64, extents: &[Extent]) -> f64 {
+        if self.joined(links, weld, extents).is_ok() {
+            return weld;
+        }
+        let Some(least) = links.first() else { return 0.0 };
+        let (mut fine, mut refused) = (least.needs.max(1e-9 * weld), weld);
+        loop {
+            let tried = three_digits((fine * refused).sqrt());
+            if tried <= fine || tried >= refused {
+                break;
+            }
+            if self.joined(links, tried, extents).is_ok() {
+                fine = tried;
+            } else {
+                refused = tried;
+            }
+        }
+        if fine > least.needs { fine } else { 0.0 }
+    }
+}
+
+/// About the same, with three digits.
+fn three_digits(x: f64) -> f64 {
+    format!("{x:.2e}").parse().unwrap_or(x)
+}
+
+/// The first number with three digits that is no smaller.
+pub(super) fn rounded_up(x: f64) -> f64 {
+    if x <= 0.0 || !x.is_finite() {
+        return x.max(0.0);
+    }
+    let near = three_digits(x);
+    if near >= x {
+        near
+    } else {
+        three_digits(x + 10.0_f64.powf(x.log10().floor() - 2.0))
+    }
+}
+
+/// The first of the group of a surface, halving the way there for the next time.
+fn root(groups: &mut [u32], mut i: u32) -> u32 {
+    while groups[i as usize] != i {
+        groups[i as usize] = groups[groups[i as usize] as usize];
+        i = groups[i as usize];
+    }
+    i
+}
