@@ -438,6 +438,55 @@ fn plane_differences_leave_walls_like_any_other() {
     assert!(colours("tube.csg") > 0, "green where solids are cut");
 }
 
+/// Two boxes with a common face, turned by 30°, by matrices of six digits.
+const TURNED: &str = "union() {
+multmatrix([[0.866025, -0.5, 0, 0], [0.5, 0.866025, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+cube(size = [17.3, 5, 5], center = false);
+multmatrix([[0.866025, -0.5, 0, 14.9823], [0.5, 0.866025, 0, 8.65], [0, 0, 1, 0], [0, 0, 0, 1]])
+cube(size = [5, 5, 5], center = false);
+}
+";
+
+#[test]
+fn check_suggests_a_weld_and_lists_what_it_joins() {
+    let desk = Desk::new();
+    desk.put("turned.csg", TURNED);
+    let json = |args: &[&str]| {
+        let done = desk.run(args);
+        assert_eq!(done.code, 0, "{}", done.err);
+        serde_json::from_str::<serde_json::Value>(&done.out).expect("one object")
+    };
+    let plain = json(&["check", "turned.csg", "--json"]);
+    assert_eq!(plain["welds"], serde_json::json!([]));
+    let pair = &plain["near_misses"][0]["surfaces"];
+    assert_eq!((&pair[0]["line"], &pair[1]["line"]), (&3.into(), &5.into()));
+    let weld = plain["suggested_weld"].as_f64().expect("a number").to_string();
+    let message = plain["warnings"][0].as_str().expect("a warning");
+    assert!(message.contains(&format!("--weld {weld} makes them one")), "{message}");
+
+    let welded = json(&["check", "turned.csg", "--json", "--weld", &weld]);
+    assert_eq!(welded["warnings"], serde_json::json!([]));
+    assert_eq!(welded["welds"][0]["surfaces"], *pair);
+    let text = desk.run(&["check", "turned.csg", "--weld", &weld]).out;
+    assert!(text.contains("\nwelds      "), "{text}");
+    assert!(
+        text.contains("\n  3:1 (cuboid, face 1) and 5:1 (cuboid, face 0), "),
+        "{text}"
+    );
+
+    let ray = ["ray", "turned.csg", "--origin=-8.66025,-3.5,1", "--dir=0.866025,0.5,0"];
+    let spans = |weld: &str| {
+        json(&[&ray[..], &["--json", "--weld", weld]].concat())["spans"]
+            .as_array()
+            .map(Vec::len)
+    };
+    assert_eq!((spans("0"), spans(&weld)), (Some(2), Some(1)));
+    let done = desk.run(&["check", "turned.csg", "--weld", "7"]);
+    assert_eq!(done.code, 1, "{}", done.out);
+    assert!(done.out.contains("a weld of 7 joins two faces of"), "{}", done.out);
+    assert_eq!(desk.run(&["check", "turned.csg", "--weld=-1"]).code, 2);
+}
+
 #[test]
 fn trees_larger_than_allowed_are_refused() {
     let desk = Desk::new();

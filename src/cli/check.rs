@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 use solidray::read::{Model, ReadError, ReadErrorKind};
-use solidray::{Scene, Solid};
+use solidray::{Leaf, NearMisses, Scene, Solid, Weld};
 
 use super::input::{CompileFault, Reading};
 use super::output::{self, BoundsJson, bounds_json, point};
@@ -49,7 +49,26 @@ struct Report {
     faceted: usize,
     turned: usize,
     bounds: Option<BoundsJson>,
+    welds: Vec<PairJson>,
+    near_misses: Vec<PairJson>,
+    suggested_weld: Option<f64>,
     warnings: Vec<String>,
+}
+
+/// Two surfaces that are, or nearly are, one.
+#[derive(Serialize)]
+struct PairJson {
+    distance: f64,
+    surfaces: [SurfaceJson; 2],
+}
+
+#[derive(Serialize)]
+struct SurfaceJson {
+    leaf: u32,
+    face: u32,
+    kind: &'static str,
+    line: Option<u32>,
+    column: Option<u32>,
 }
 
 impl Check {
@@ -60,9 +79,10 @@ impl Check {
     ) -> anyhow::Result<Answer> {
         let found = self.reading.read_silently(&self.file).and_then(|model| {
             let scene = self.reading.compile(&self.file, &model.solid)?;
-            Ok((model, scene))
+            let near_misses = self.reading.near_misses(&self.file, &model.solid)?;
+            Ok((model, scene, near_misses))
         });
-        let (model, scene) = match found {
+        let (model, scene, near_misses) = match found {
             Ok(found) => found,
             Err(error) if is_about_the_model(&error) => {
                 let message = format!("{error:#}");
@@ -75,7 +95,11 @@ impl Check {
             }
             Err(error) => return Err(error),
         };
-        let report = Report::new(&self.file.to_string_lossy(), &model, &scene);
+        let file = self.file.to_string_lossy();
+        let mut report = Report::new(&file, &model, &scene);
+        report.near_misses = near_misses.pairs.iter().map(|w| pair(w, &scene)).collect();
+        report.suggested_weld = near_misses.weld;
+        report.warnings.extend(warning(&file, &near_misses, &scene));
         if global.json {
             output::json(out, report)?;
         } else {
@@ -83,6 +107,47 @@ impl Check {
         }
         Ok(Answer::Yes)
     }
+}
+
+/// How many pairs of surfaces are listed unless all are asked for.
+const FEW: usize = 5;
+
+fn pair(weld: &Weld, scene: &Scene) -> PairJson {
+    let surface = |k: usize| {
+        let [leaf, face] = [weld.leaves[k], weld.faces[k]];
+        let Leaf { kind, place, .. } = scene.leaf(leaf);
+        let line = place.map(|place| place.line);
+        SurfaceJson { leaf, face, kind, line, column: place.map(|place| place.column) }
+    };
+    PairJson { distance: weld.distance, surfaces: [surface(0), surface(1)] }
+}
+
+/// Two surfaces in words, with their places in the file.
+fn in_words(pair: &PairJson) -> String {
+    let [a, b] = pair.surfaces.each_ref().map(|surface| {
+        let SurfaceJson { leaf, face, kind, line, column } = surface;
+        match (line, column) {
+            (Some(line), Some(column)) => {
+                format!("{line}:{column} ({kind}, face {face})")
+            }
+            _ => format!("leaf {leaf} ({kind}, face {face})"),
+        }
+    });
+    format!("{a} and {b}, {:.2e} apart", pair.distance)
+}
+
+/// What to say of surfaces that nearly coincide.
+fn warning(file: &str, near_misses: &NearMisses, scene: &Scene) -> Option<String> {
+    let farthest = near_misses.pairs.first()?;
+    let count = match near_misses.pairs.len() {
+        1 => "a pair of surfaces nearly coincides".to_owned(),
+        n => format!("{n} pairs of surfaces nearly coincide, the farthest"),
+    };
+    let advice = match near_misses.weld {
+        Some(weld) => format!("--weld {weld} makes them one"),
+        None => "no --weld makes all of them one".to_owned(),
+    };
+    Some(format!("{file}: {count}: {}; {advice}", in_words(&pair(farthest, scene))))
 }
 
 /// Whether an error is the answer to the question rather than a failure to ask it.
@@ -122,6 +187,9 @@ impl Report {
             faceted: model.counts.faceted,
             turned: model.counts.turned,
             bounds: bounds_json(&scene.bounds()),
+            welds: scene.welds().iter().map(|weld| pair(weld, scene)).collect(),
+            near_misses: Vec::new(),
+            suggested_weld: None,
             warnings: model
                 .warnings
                 .iter()
@@ -161,6 +229,11 @@ impl Report {
             writeln!(out, "bounds     {} to {}", point(bounds.min), point(bounds.max))?;
             writeln!(out, "size       {}", point(bounds.size()))?;
         }
+        if let Some(farthest) = self.welds.first() {
+            let (n, distance) = (self.welds.len(), farthest.distance);
+            writeln!(out, "welds      {n}, of surfaces at most {distance:.2e} apart")?;
+            print_pairs(out, &self.welds, global)?;
+        }
         if global.verbose {
             writeln!(out, "nodes      {} after flattening", scene.node_count())?;
         }
@@ -169,7 +242,27 @@ impl Report {
             for warning in &self.warnings {
                 writeln!(out, "  {warning}")?;
             }
+            if self.near_misses.len() > 1 {
+                writeln!(out, "nearly one {}", self.near_misses.len())?;
+                print_pairs(out, &self.near_misses, global)?;
+            }
         }
         Ok(())
     }
+}
+
+/// Prints the first few pairs, or all of them.
+fn print_pairs(
+    out: &mut dyn Write,
+    pairs: &[PairJson],
+    global: Global,
+) -> anyhow::Result<()> {
+    let shown = if global.verbose { pairs.len() } else { pairs.len().min(FEW) };
+    for pair in &pairs[..shown] {
+        writeln!(out, "  {}", in_words(pair))?;
+    }
+    if shown < pairs.len() {
+        writeln!(out, "  and {} more, listed with -v", pairs.len() - shown)?;
+    }
+    Ok(())
 }

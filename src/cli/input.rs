@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 use solidray::read::{self, Curves, Format, Model, ReadOptions};
-use solidray::{CompileError, CompileOptions, Scene, Solid};
+use solidray::{CompileError, CompileOptions, NearMisses, Scene, Solid};
 
 use super::Global;
 use super::numbers::Numbers;
@@ -136,6 +136,16 @@ impl Reading {
         solid: &Solid,
     ) -> Result<Scene, CompileFault> {
         Scene::compile_with(solid, &self.compiling())
+            .map_err(|error| CompileFault { file: file.display().to_string(), error })
+    }
+
+    /// What of a model nearly coincides; an error begins with the file's name.
+    pub(super) fn near_misses(
+        &self,
+        file: &Path,
+        solid: &Solid,
+    ) -> Result<NearMisses, CompileFault> {
+        Scene::near_misses(solid, &self.compiling())
             .map_err(|error| CompileFault { file: file.display().to_string(), error })
     }
 
