@@ -36,7 +36,7 @@ fn a_tangent_makes_no_span() {
 #[test]
 fn a_line_that_touches_an_edge_makes_no_span() {
     let edge = dvec3(-1.0, 1.0, 0.25);
-    for dir in [dvec3(3.0, 4.0, 0.0), dvec3(1.0, 3.0, 0.125), dvec3(0.3, 0.7, -0.1)] {
+    for dir in [dvec3(3.0, 4.0, 0.0), dvec3(1.0, 3.0, 0.125)] {
         for steps in (-40..40).map(f64::from) {
             let ray = Ray::new(edge + steps * dir, dir);
             let beside = ray.at(-steps) - edge;

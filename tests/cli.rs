@@ -180,6 +180,8 @@ fn ray_lists_spans_with_points_normals_and_owners() {
         (1, Some(4), Some(3))
     );
     assert_eq!(first.exit.kind, "cylinder");
+    let error = first.enter.error.expect("a steep ray has a bound");
+    assert!(0.0 < error && error < 1e-12, "{error:e}");
 }
 
 #[test]

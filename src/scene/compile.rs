@@ -170,6 +170,8 @@ struct Compiler {
     boxes: Vec<Aabb>,
     conditions: Vec<f64>,
     slacks: Vec<Slack>,
+    /// How far interning has moved each leaf's surfaces.
+    moved: Vec<f64>,
     part_list: Vec<Part>,
     part_numbers: HashMap<PartKey, u32>,
     meshes: Meshes,
@@ -220,6 +222,7 @@ fn visit(solid: &Solid, options: &CompileOptions) -> Result<Compiler, CompileErr
         boxes: Vec::new(),
         conditions: Vec::new(),
         slacks: Vec::new(),
+        moved: Vec::new(),
         part_list: Vec::new(),
         part_numbers: HashMap::new(),
         meshes: Meshes::default(),
@@ -393,12 +396,12 @@ impl Compiler {
         };
         let mut surfaces = Surfaces::new(&mut self.shapes, &extents);
         if weld <= 0.0 {
-            surfaces.hand_out(&mut self.shapes);
+            self.moved = surfaces.hand_out(&mut self.shapes, &extents);
             return Ok(Vec::new());
         }
         let welded = surfaces.weld(weld, &extents, &boxes);
         let (welds, moved) = welded.map_err(|refusal| self.refused(&refusal, weld))?;
-        surfaces.hand_out(&mut self.shapes);
+        self.moved = surfaces.hand_out(&mut self.shapes, &extents);
         for (leaf, by) in (0..).zip(moved).filter(|&(_, by)| by > 0.0) {
             self.move_box(leaf, by);
         }
@@ -499,8 +502,10 @@ impl Compiler {
             self.boxes.iter().map(|b| b.intersection(reach)).collect();
         let near = (0..).zip(&clipped).filter(|(_, b)| !b.is_empty()).map(|(i, _)| i);
         let hierarchy = Bvh::over(near.collect(), &clipped);
+        let moved = self.moved.into_iter().chain(std::iter::repeat(0.0));
+        let slacks = self.slacks.iter().zip(moved);
         let slacks: Vec<f64> =
-            self.slacks.iter().map(|slack| slack.within(&reach)).collect();
+            slacks.map(|(slack, moved)| slack.within(&reach) + moved).collect();
         let worst = |numbers: &[f64]| numbers.iter().copied().fold(0.0, f64::max);
         Ok(Scene {
             bounds,

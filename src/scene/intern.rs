@@ -73,8 +73,18 @@ impl Surfaces {
         }
     }
 
-    /// Gives the leaves their leaders' numbers.
-    pub(super) fn hand_out(self, shapes: &mut [Shape]) {
+    /// At most how far each leaf's surfaces are moved when they take over their leaders' numbers.
+    fn moved(&self, extents: &[Extent]) -> Vec<f64> {
+        let mut moved = vec![0.0; extents.len()];
+        self.planes.add_moved(&mut moved, extents);
+        self.walls.add_moved(&mut moved, extents);
+        self.meshes.add_moved(&mut moved, extents);
+        moved
+    }
+
+    /// Gives the leaves their leaders' numbers; says how far that moves their surfaces.
+    pub(super) fn hand_out(self, shapes: &mut [Shape], extents: &[Extent]) -> Vec<f64> {
+        let moved = self.moved(extents);
         let mut planes = self.planes.led();
         let mut meshes = self.meshes.led();
         let walls = self.walls.extended();
@@ -93,6 +103,7 @@ impl Surfaces {
                 }
             }
         }
+        moved
     }
 }
 
@@ -156,6 +167,22 @@ impl<T: Sheet> Sheets<T> {
     /// The surface that one takes over.
     pub(super) fn led_by(&self, i: u32) -> &T {
         &self.faces[self.leader[i as usize] as usize].surface
+    }
+
+    /// Raises a length for each leaf to how far its surfaces are from their leaders.
+    ///
+    /// The distance is a small difference of large numbers and itself rounded, by less than
+    /// the room that [`Extent::rounding`] has for other things.
+    fn add_moved(&self, moved: &mut [f64], extents: &[Extent]) {
+        for (i, Face { surface, leaf, .. }) in (0..).zip(&self.faces) {
+            let extent = &extents[*leaf as usize];
+            let leader = self.led_by(i);
+            if compare(&surface.numbers(), &leader.numbers()).is_ne() {
+                let distance = surface.distance(leader, extent) + extent.rounding / 4.0;
+                let moved = &mut moved[*leaf as usize];
+                *moved = moved.max(distance);
+            }
+        }
     }
 
     fn led(&self) -> impl Iterator<Item = &T> {
