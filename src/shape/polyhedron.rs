@@ -14,6 +14,7 @@
 //! "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013, whose inclusive edge tests
 //! suffice for first hits but not for this.
 
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -317,7 +318,7 @@ impl Shear {
 /// Where along the line the triangle is passed, given the areas opposite its corners.
 ///
 /// On an edge or a corner the answer comes from that edge or corner alone, so that all
-/// faces around it give the same bits, and it is always between the corners' own places.
+/// faces around it give the same bits. It does not depend on which corner a face lists first.
 fn along([a, b, c]: [Corner; 3], areas: [f64; 3]) -> f64 {
     match areas.map(|x| x == 0.0) {
         [true, false, false] => along_edge(b, c),
@@ -326,14 +327,7 @@ fn along([a, b, c]: [Corner; 3], areas: [f64; 3]) -> f64 {
         [false, true, true] => a.along,
         [true, false, true] => b.along,
         [true, true, false] => c.along,
-        [true, true, true] | [false, false, false] => {
-            let [_, ca, ab] = areas;
-            let sum = areas.iter().sum::<f64>();
-            let step = ((b.along - a.along) * ca + (c.along - a.along) * ab) / sum;
-            let least = a.along.min(b.along).min(c.along);
-            let most = a.along.max(b.along).max(c.along);
-            (a.along + step).max(least).min(most)
-        }
+        [true, true, true] | [false, false, false] => along_face([a, b, c]),
     }
 }
 
@@ -341,9 +335,43 @@ fn along([a, b, c]: [Corner; 3], areas: [f64; 3]) -> f64 {
 fn along_edge(a: Corner, b: Corner) -> f64 {
     let key = |c: &Corner| (c.beside.x, c.beside.y, c.along);
     let (a, b) = if key(&a) <= key(&b) { (a, b) } else { (b, a) };
-    let step = b.beside - a.beside;
-    let axis = step.abs().max_position();
-    a.along + (b.along - a.along) * (-a.beside[axis] / step[axis])
+    let axis = (b.beside - a.beside).abs().max_position();
+    passed(a, b, axis).along
+}
+
+/// Where the line passes the inside of a triangle: between the two edges that pass it in
+/// front and behind, as it is seen along its longer side.
+///
+/// A triangle that is almost parallel to the line is seen as a sliver whose areas are
+/// nothing but rounding. Still both edges are passed where they should be, so an answer
+/// between them is near the triangle.
+fn along_face(mut corners: [Corner; 3]) -> f64 {
+    let [a, b, c] = corners.map(|corner| corner.beside);
+    let axis = (a.max(b).max(c) - a.min(b).min(c)).max_position();
+    let key = |c: &Corner| (c.beside[axis], c.beside[1 - axis], c.along);
+    corners.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal));
+    let [low, middle, high] = corners;
+    let one = passed(low, high, axis);
+    let other = if middle.beside[axis] > 0.0 {
+        passed(low, middle, axis)
+    } else {
+        passed(middle, high, axis)
+    };
+    passed(one, other, 1 - axis).along
+}
+
+/// The place between two where a coordinate is zero, or one of them where it never is.
+fn passed(from: Corner, to: Corner, axis: usize) -> Corner {
+    let part = -from.beside[axis] / (to.beside[axis] - from.beside[axis]);
+    let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
+    let between = |a: f64, b: f64| (a + part * (b - a)).max(a.min(b)).min(a.max(b));
+    Corner {
+        beside: DVec2::new(
+            between(from.beside.x, to.beside.x),
+            between(from.beside.y, to.beside.y),
+        ),
+        along: between(from.along, to.along),
+    }
 }
 
 #[cfg(test)]

@@ -28,6 +28,15 @@ impl Dice {
         usize::try_from(self.bits() % n).expect("it is below a count")
     }
 
+    /// The numbers below `n` in some order.
+    pub(crate) fn order(&mut self, n: usize) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..n).collect();
+        for i in (1..n).rev() {
+            order.swap(i, self.below(i + 1));
+        }
+        order
+    }
+
     /// A point of the cube from −`reach` to `reach`.
     pub(crate) fn point(&mut self, reach: f64) -> DVec3 {
         DVec3::from_array([(); 3].map(|()| self.within(-reach, reach)))

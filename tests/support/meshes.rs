@@ -77,15 +77,20 @@ pub(crate) fn icosphere(levels: u32) -> Mesh {
     }
     let mut mesh = regular(points, 2.0);
     for _ in 0..levels {
-        mesh = halved(&mesh);
+        mesh = quartered(&moved(&mesh, DVec3::normalize));
     }
-    let points = mesh.points().iter().map(|p| p.normalize()).collect();
+    moved(&mesh, DVec3::normalize)
+}
+
+/// The same faces over other points.
+fn moved(mesh: &Mesh, to: impl FnMut(DVec3) -> DVec3) -> Mesh {
+    let points = mesh.points().iter().copied().map(to).collect();
     Mesh::new(points, mesh.faces().to_vec()).expect("the same faces are closed again")
 }
 
-/// Every face cut into four at the middles of its edges.
-fn halved(mesh: &Mesh) -> Mesh {
-    let mut points: Vec<DVec3> = mesh.points().iter().map(|p| p.normalize()).collect();
+/// The same solid, every face cut into four at the middles of its edges.
+pub(crate) fn quartered(mesh: &Mesh) -> Mesh {
+    let mut points = mesh.points().to_vec();
     let mut middles = HashMap::new();
     let mut faces = Vec::new();
     for &[a, b, c] in mesh.faces() {
@@ -104,9 +109,31 @@ fn halved(mesh: &Mesh) -> Mesh {
 /// The same faces over points moved in or out at random.
 pub(crate) fn jittered(mesh: &Mesh, amount: f64, seed: u64) -> Mesh {
     let mut dice = Dice::new(seed);
-    let moved = |p: &DVec3| *p * (1.0 + dice.within(-amount, amount));
-    let points = mesh.points().iter().map(moved).collect();
-    Mesh::new(points, mesh.faces().to_vec()).expect("the same faces are closed again")
+    moved(mesh, |p| p * (1.0 + dice.within(-amount, amount)))
+}
+
+/// The same faces over points moved to multiples of 2⁻²⁰, whose middles are numbers too.
+pub(crate) fn rounded(mesh: &Mesh) -> Mesh {
+    const GRID: f64 = (1_u32 << 20) as f64;
+    moved(mesh, |p| (p * GRID).round() / GRID)
+}
+
+/// The same solid with its points and faces in another order, and the corners of each face
+/// begun with another.
+pub(crate) fn shuffled(mesh: &Mesh, seed: u64) -> Mesh {
+    let mut dice = Dice::new(seed);
+    let order = dice.order(mesh.points().len());
+    let mut points = vec![DVec3::ZERO; order.len()];
+    for (&to, &p) in order.iter().zip(mesh.points()) {
+        points[to] = p;
+    }
+    let number = |i: u32| u32::try_from(order[i as usize]).expect("few points");
+    let mut faces = vec![[0; 3]; mesh.faces().len()];
+    for (to, face) in dice.order(faces.len()).into_iter().zip(mesh.faces()) {
+        faces[to] = face.map(number);
+        faces[to].rotate_left(dice.below(3));
+    }
+    Mesh::new(points, faces).expect("the same faces are closed")
 }
 
 /// The sphere of `rings` latitudes and `spokes` longitudes.
@@ -195,6 +222,41 @@ pub(crate) fn touching_cubes(shared: usize) -> Mesh {
     Mesh::new(points, faces).expect("two closed meshes are one")
 }
 
+/// Two cubes of edge 1, one upon the other, each with a face of its own between them.
+pub(crate) fn stacked_cubes() -> Mesh {
+    let (low, high) = (grid_box(DVec3::ZERO, DVec3::ONE, 2), dvec3(1.0, 1.0, 2.0));
+    let top = grid_box(DVec3::Z, high, 2);
+    let first = u32::try_from(low.points().len()).expect("few points");
+    let points = [low.points(), top.points()].concat();
+    let moved = top.faces().iter().map(|face| face.map(|i| i + first));
+    let faces = low.faces().iter().copied().chain(moved).collect();
+    Mesh::new(points, faces).expect("two closed meshes are one")
+}
+
+/// The same solid with a second corner beside one end of every edge, at this part of its
+/// length: faces become needles, or have no area at all if the part is zero.
+pub(crate) fn with_slivers(mesh: &Mesh, part: f64) -> Mesh {
+    let mut points = mesh.points().to_vec();
+    let mut doubled = HashMap::new();
+    let mut faces = Vec::new();
+    for &face in mesh.faces() {
+        let mut ring = Vec::new();
+        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+            let (a, b) = (face[i], face[j]);
+            let (low, high) = (a.min(b), a.max(b));
+            let near = *doubled.entry((low, high)).or_insert_with(|| {
+                let p = points[low as usize];
+                points.push(p + part * (points[high as usize] - p));
+                u32::try_from(points.len() - 1).expect("few points")
+            });
+            ring.extend([a, near]);
+        }
+        let [a, ab, b, bc, c, ca] = ring[..] else { unreachable!("three edges") };
+        faces.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+    }
+    Mesh::new(points, faces).expect("cut edges match")
+}
+
 /// A tetrahedron `length` long and 1 wide.
 pub(crate) fn needle(length: f64) -> Mesh {
     mapped(&tetrahedron(), &DAffine3::from_scale(dvec3(length, 1.0, 1.0)))
@@ -202,6 +264,5 @@ pub(crate) fn needle(length: f64) -> Mesh {
 
 /// The image of a mesh under a map that is not mirrored.
 pub(crate) fn mapped(mesh: &Mesh, map: &DAffine3) -> Mesh {
-    let points = mesh.points().iter().map(|&p| map.transform_point3(p)).collect();
-    Mesh::new(points, mesh.faces().to_vec()).expect("the same faces are closed again")
+    moved(mesh, |p| map.transform_point3(p))
 }

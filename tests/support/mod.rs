@@ -2,9 +2,11 @@
 //!
 //! A test file takes what it needs: `#[expect(dead_code, reason = "…")] mod support;`.
 
+pub(crate) mod aim;
 pub(crate) mod dice;
 pub(crate) mod meshes;
 pub(crate) mod model;
+pub(crate) mod nearness;
 pub(crate) mod strategies;
 
 use glam::DVec3;
