@@ -56,6 +56,10 @@
 //! same results to the last bit; `image` shades pictures; `cli` is the program. Users of the
 //! library alone take `default-features = false`.
 
+// Tests of private parts share their meshes with tests from outside.
+#[cfg(test)]
+extern crate self as solidray;
+
 mod aabb;
 mod angle;
 mod bvh;

@@ -19,6 +19,8 @@ mod polyhedron;
 mod primitive;
 mod quadric;
 mod wall;
+#[cfg(test)]
+mod watertight;
 
 use std::sync::Arc;
 
