@@ -32,7 +32,7 @@ impl Mesh {
         points: Vec<DVec3>,
         faces: &[F],
     ) -> Result<Self, MeshError> {
-        let triangles = triangulated(&points, faces)?;
+        let triangles = triangulated(&points, faces.iter().map(AsRef::as_ref))?;
         Self::new(points, triangles)
     }
 
@@ -72,12 +72,12 @@ impl Mesh {
 }
 
 /// The triangles of faces with three or more corners.
-pub(crate) fn triangulated<F: AsRef<[u32]>>(
+pub(crate) fn triangulated<'a>(
     points: &[DVec3],
-    faces: &[F],
+    faces: impl Iterator<Item = &'a [u32]>,
 ) -> Result<Vec<[u32; 3]>, MeshError> {
-    let mut triangles = Vec::with_capacity(faces.len());
-    for (face, corners) in faces.iter().map(AsRef::as_ref).enumerate() {
+    let mut triangles = Vec::with_capacity(faces.size_hint().0);
+    for (face, corners) in faces.enumerate() {
         if let Some(&index) = corners.iter().find(|&&i| i as usize >= points.len()) {
             let (index, count) = (u64::from(index), points.len());
             return Err(MeshError::NoSuchPoint { face, index, count });

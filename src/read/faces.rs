@@ -12,10 +12,15 @@ use crate::mesh::{self, Mesh, MeshError};
 pub(super) const TURNED: &str = "the mesh was inside out and has been turned";
 
 /// Points and faces, counter-clockwise seen from outside, not yet checked.
+///
+/// A list for each face would take twice as much memory as a whole mesh.
 #[derive(Debug, Default)]
 pub(super) struct Faces {
     pub(super) points: Vec<DVec3>,
-    pub(super) faces: Vec<Vec<u32>>,
+    /// The corners of all faces, one face after the other.
+    corners: Vec<u32>,
+    /// Where each face ends.
+    ends: Vec<usize>,
 }
 
 /// A mesh made of them.
@@ -27,6 +32,27 @@ pub(super) struct Built {
 }
 
 impl Faces {
+    /// Adds a face.
+    pub(super) fn push(&mut self, corners: impl IntoIterator<Item = u32>) {
+        self.corners.extend(corners);
+        self.ends.push(self.corners.len());
+    }
+
+    /// Whether there are none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// The corners of each face.
+    fn iter(&self) -> impl Iterator<Item = &[u32]> {
+        let mut from = 0;
+        self.ends.iter().map(move |&end| {
+            let face = &self.corners[from..end];
+            from = end;
+            face
+        })
+    }
+
     /// The mesh, put right where what is meant is plain: points listed several times are
     /// welded if the mesh is open without, and bodies that are inside out are turned.
     ///
@@ -39,13 +65,14 @@ impl Faces {
         }
         let mut triangles =
             checked.map_err(|error| Located::nowhere(ReadErrorKind::Mesh(error)))?;
-        let turned = turn(&self.points, &mut triangles);
-        Ok(Built { mesh: Mesh::from_closed(self.points, triangles), turned })
+        let Self { points, .. } = self;
+        let turned = turn(&points, &mut triangles);
+        Ok(Built { mesh: Mesh::from_closed(points, triangles), turned })
     }
 
     /// The faces as triangles, which are closed.
     fn triangles(&self) -> Result<Vec<[u32; 3]>, MeshError> {
-        let triangles = mesh::triangulated(&self.points, &self.faces)?;
+        let triangles = mesh::triangulated(&self.points, self.iter())?;
         mesh::check_closed(&self.points, &triangles)?;
         Ok(triangles)
     }
@@ -56,23 +83,24 @@ impl Faces {
         let mut distinct = Points::default();
         let mut same = Vec::with_capacity(self.points.len());
         for &point in &self.points {
-            let Some(index) = distinct.add(point) else { return false };
+            let Ok(index) = distinct.add(point) else { return false };
             same.push(index);
         }
         if distinct.points.len() == self.points.len() {
             return false;
         }
-        self.points = distinct.finish();
-        for face in &mut self.faces {
-            for index in face.iter_mut() {
-                *index = same[*index as usize];
-            }
+        let mut welded = Self { points: distinct.finish(), ..Self::default() };
+        for face in self.iter() {
+            let mut face: Vec<u32> = face.iter().map(|&i| same[i as usize]).collect();
             face.dedup();
             while face.len() > 1 && face.first() == face.last() {
                 face.pop();
             }
+            if face.len() > 2 {
+                welded.push(face);
+            }
         }
-        self.faces.retain(|face| face.len() > 2);
+        *self = welded;
         true
     }
 }
@@ -85,16 +113,20 @@ pub(super) struct Points {
 }
 
 impl Points {
-    /// The index of a point; none when there are more points than indices.
-    pub(super) fn add(&mut self, point: DVec3) -> Option<u32> {
-        let next = u32::try_from(self.points.len()).ok()?;
+    /// The index of a point, unless there are more points than indices.
+    pub(super) fn add(&mut self, point: DVec3) -> Result<u32, Located> {
+        let count = self.points.len();
+        let next = u32::try_from(count).map_err(|_| {
+            let error = MeshError::TooLarge { count, limit: u32::MAX as usize };
+            Located::nowhere(ReadErrorKind::Mesh(error))
+        })?;
         // Adding zero makes −0 and 0 one number.
         let bits = (point + DVec3::ZERO).to_array().map(f64::to_bits);
         let index = *self.found.entry(bits).or_insert(next);
         if index == next {
             self.points.push(point);
         }
-        Some(index)
+        Ok(index)
     }
 
     /// The points, without room for more.

@@ -46,7 +46,7 @@ fn collect(models: &[Model]) -> std::result::Result<Faces, Located> {
             // Without arities all faces are triangles.
             let arity = arities.next().map_or(3, |&n| n as usize).clamp(1, rest.len());
             let (corners, others) = rest.split_at(arity);
-            all.faces.push(corners.iter().map(|i| i.saturating_add(base)).collect());
+            all.push(corners.iter().map(|i| i.saturating_add(base)));
             rest = others;
         }
     }

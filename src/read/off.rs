@@ -28,13 +28,14 @@ pub(super) fn read(text: &[u8]) -> Result<Faces, Located> {
         let point = [words.number()?, words.number()?, words.number()?];
         read.points.push(DVec3::from_array(point));
     }
+    let mut corners = Vec::new();
     for _ in 0..faces {
-        let mut corners = Vec::new();
+        corners.clear();
         for _ in 0..words.count()? {
             corners.push(words.count()?);
         }
         words.skip_line();
-        read.faces.push(corners);
+        read.push(corners.iter().copied());
     }
     Ok(read)
 }

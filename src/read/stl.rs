@@ -102,7 +102,9 @@ fn text(bytes: &[u8]) -> Result<Faces, Located> {
 #[derive(Default)]
 struct Soup {
     points: Points,
-    faces: Vec<Vec<u32>>,
+    faces: Faces,
+    /// The corners of the face being added.
+    face: Vec<u32>,
 }
 
 impl Soup {
@@ -113,15 +115,16 @@ impl Soup {
         {
             return Ok(());
         }
-        let add = |&corner: &DVec3| self.points.add(corner);
-        let Some(face) = corners.iter().map(add).collect() else {
-            return Err(Located::nowhere(ReadErrorKind::TooLong(usize::MAX)));
-        };
-        self.faces.push(face);
+        self.face.clear();
+        for &corner in corners {
+            self.face.push(self.points.add(corner)?);
+        }
+        self.faces.push(self.face.iter().copied());
         Ok(())
     }
 
-    fn finish(self) -> Faces {
-        Faces { points: self.points.finish(), faces: self.faces }
+    fn finish(mut self) -> Faces {
+        self.faces.points = self.points.finish();
+        self.faces
     }
 }

@@ -33,11 +33,11 @@ pub(super) fn polyhedron(
         // OpenSCAD's faces are clockwise, ours counter-clockwise.
         face.reverse();
         if face.len() > 2 {
-            read.faces.push(face);
+            read.push(face);
         }
     }
     warn_of_dropped(call, dropped, reading);
-    if read.faces.is_empty() {
+    if read.is_empty() {
         return Ok(Shape::Empty);
     }
     let place = call.place();
