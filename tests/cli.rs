@@ -527,6 +527,34 @@ fn standard_input_can_be_the_model() {
 }
 
 #[test]
+fn limits_of_reading_can_be_raised() {
+    let desk = Desk::new();
+    desk.put("round.csg", "sphere(r = 1, $fn = 100);\n");
+    let faceted = ["check", "round.csg", "--curves", "faceted", "--max-facets"];
+    let done = desk.run(&[&faceted[..], &["9999"]].concat());
+    let said = "round.csg:1:1: with this one, curves and polygons have 10000 triangles, which is \
+                more than the limit of 9999; --max-facets raises it";
+    assert_eq!(done.code, 1);
+    assert!(done.out.starts_with(said), "{}{}", done.out, done.err);
+    assert_eq!(desk.run(&[&faceted[..], &["10000"]].concat()).code, 0);
+
+    let length = BALL.len().to_string();
+    let less = (BALL.len() - 1).to_string();
+    let said = format!(
+        "there are more bytes to read than the limit of {less}; --max-bytes raises it"
+    );
+    let point = ["--format", "csg", "0,0,0", "--max-bytes"];
+    for (file, input) in [("ball.csg", ""), ("-", BALL)] {
+        let contains = [&["contains", file], &point[..]].concat();
+        let done = desk.run_with_input(&[&contains[..], &[&length]].concat(), input);
+        assert_eq!(done.code, 0, "{file}: {}", done.err);
+        let done = desk.run_with_input(&[&contains[..], &[&less]].concat(), input);
+        assert_eq!(done.code, 2, "{file}");
+        assert!(done.err.contains(&said), "{}", done.err);
+    }
+}
+
+#[test]
 #[cfg(unix)]
 fn a_broken_pipe_is_no_failure() {
     let desk = Desk::new();

@@ -156,8 +156,8 @@ fn refused_csg_is_located() {
     let error = read::bytes(text, Path::new("a.csg"), Format::Csg, &faceted).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "a.csg:1:1: the facets are too many: with this one the curves have \
-         1000000000000000000 triangles, at most 30000000 are made"
+        "a.csg:1:1: with this one, curves and polygons have 1000000000000000000 triangles, \
+         which is more than the limit of 30000000; --max-facets raises it"
     );
 }
 
@@ -585,4 +585,111 @@ proptest! {
     fn cut_files_are_refused_or_read(cut in 0_usize..284) {
         let _ = bytes(&binary_stl(b"solid")[..cut], Format::Stl);
     }
+}
+
+fn limited(text: &str, max_bytes: u64, max_facets: u64) -> Result<Model, ReadError> {
+    let options = ReadOptions {
+        curves: Curves::Faceted,
+        max_bytes,
+        max_facets,
+        ..ReadOptions::default()
+    };
+    read::bytes(text.as_bytes(), Path::new("a.csg"), Format::Csg, &options)
+}
+
+#[test]
+fn facets_are_limited() {
+    // A cylinder of 6 sides has 20 triangles, but is counted as 24; a prism over a square 12.
+    let text = "cylinder(r = 1, $fn = 6);\n linear_extrude(1) polygon([[0,0],[1,0],[1,1],[0,1]]);";
+    assert!(limited(text, 1000, 36).is_ok());
+    let expected = |place: &str, count: u32, limit: u32| {
+        format!(
+            "a.csg:{place}: with this one, curves and polygons have {count} triangles, which \
+             is more than the limit of {limit}; --max-facets raises it"
+        )
+    };
+    let error = limited(text, 1000, 35).expect_err("there is one too many");
+    assert_eq!(error.to_string(), expected("2:20", 36, 35));
+    let error = limited(text, 1000, 23).expect_err("there is one too many");
+    assert_eq!(error.to_string(), expected("1:1", 24, 23));
+    // Equal curves share a mesh.
+    assert!(limited(&"cylinder(r = 1, $fn = 6);".repeat(9), 1000, 24).is_ok());
+    for text in ["cylinder(r = 1, $fn = 1e9);", "cylinder(r = 1, $fn = 1e300);"] {
+        assert!(limited(text, 1000, 30_000_000).is_err());
+    }
+}
+
+#[test]
+fn bytes_are_limited() {
+    let message = |limit: usize| {
+        format!(
+            "there are more bytes to read than the limit of {limit}; --max-bytes raises it"
+        )
+    };
+    assert!(limited("cube(1);", 8, 0).is_ok());
+    let error = limited("cube(1);", 7, 0).expect_err("it is too long");
+    assert_eq!(error.to_string(), format!("a.csg: {}", message(7)));
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mesh, other) = (folder.path().join("a.obj"), folder.path().join("b.obj"));
+    let obj = format!("{TETRAHEDRON}f 3 2 1\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    for path in [&mesh, &other] {
+        std::fs::write(path, &obj).expect("room");
+    }
+    let with = |max_bytes| ReadOptions { max_bytes, ..ReadOptions::default() };
+    assert!(read::file(&mesh, &with(obj.len() as u64)).is_ok());
+    let error =
+        read::file(&mesh, &with(obj.len() as u64 - 1)).expect_err("it is too long");
+    assert_eq!(
+        error.to_string(),
+        format!("{}: {}", mesh.display(), message(obj.len() - 1))
+    );
+
+    // What is imported counts too, each file once.
+    let csg = "import(\"a.obj\");\nimport(\"a.obj\");\n import(\"b.obj\");";
+    let model = folder.path().join("model.csg");
+    std::fs::write(&model, csg).expect("room");
+    let all = csg.len() + 2 * obj.len();
+    assert!(read::file(&model, &with(all as u64)).is_ok());
+    let error = read::file(&model, &with(all as u64 - 1)).expect_err("it is too long");
+    let place = format!("{}:3:2: import: {}", model.display(), other.display());
+    assert_eq!(error.to_string(), format!("{place}: {}", message(all - 1)));
+}
+
+/// It says that it has no length, and does not end.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_device_without_end_is_too_long() {
+    let options = ReadOptions {
+        format: Some(Format::Stl),
+        max_bytes: 1 << 20,
+        ..ReadOptions::default()
+    };
+    let error = read::file(Path::new("/dev/zero"), &options).expect_err("it has no end");
+    assert!(matches!(error.kind, ReadErrorKind::TooManyBytes { limit: 1_048_576 }));
+}
+
+/// Numbers in a file are promises: none of these takes memory for what it announces.
+#[test]
+fn counts_without_content_cost_nothing() {
+    let obj = "v 0 0 0\nf 1 2 4294967295\n";
+    assert_eq!(
+        refused(obj, Format::Obj),
+        "part.x: a face names a point that does not exist"
+    );
+    for text in ["OFF 4294967295 4294967295 4294967295\n", "OFF 0 1 0\n4294967295 0 0\n"]
+    {
+        assert!(
+            refused(text, Format::Off).contains("found the end of the file"),
+            "{text}"
+        );
+    }
+    let mut stl = vec![b' '; 84];
+    stl[80..].copy_from_slice(&u32::MAX.to_le_bytes());
+    assert_eq!(
+        refused(stl, Format::Stl),
+        "part.x: the file declares 4294967295 triangles, but has bytes for 0"
+    );
+    let csg = "polyhedron([[0,0,0],[1,0,0],[0,1,0]], [[0, 1, 4294967295, 1e300]]);";
+    assert!(bytes(csg, Format::Csg).is_ok_and(|model| model.warnings.len() == 1));
 }

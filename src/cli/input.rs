@@ -33,6 +33,22 @@ pub(super) struct Reading {
     /// occurs more than once counted as often
     #[arg(long, value_name = "N", default_value_t = CompileOptions::default().most_nodes, help_heading = "Reading")]
     max_nodes: u64,
+    /// Read no more than this, of the file and all that it imports together
+    #[arg(
+        long,
+        value_name = "BYTES",
+        default_value_t = ReadOptions::default().max_bytes,
+        help_heading = "Reading"
+    )]
+    max_bytes: u64,
+    /// Make no more triangles than this of curves and polygons
+    #[arg(
+        long,
+        value_name = "TRIANGLES",
+        default_value_t = ReadOptions::default().max_facets,
+        help_heading = "Reading"
+    )]
+    max_facets: u64,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
@@ -103,6 +119,8 @@ impl Reading {
             },
             openscad: self.openscad.clone(),
             format: self.format.map(Format::from),
+            max_bytes: self.max_bytes,
+            max_facets: self.max_facets,
         };
         if file.as_os_str() != "-" {
             return Ok(read::file(file, &options)?);
@@ -111,7 +129,8 @@ impl Reading {
             bail!("standard input needs --format csg, scad, obj, stl or off");
         };
         let mut bytes = Vec::new();
-        io::stdin().lock().read_to_end(&mut bytes).context("standard input")?;
+        let mut some = io::stdin().lock().take(self.max_bytes.saturating_add(1));
+        some.read_to_end(&mut bytes).context("standard input")?;
         Ok(read::bytes(&bytes, Path::new("standard input"), format, &options)?)
     }
 

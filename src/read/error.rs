@@ -31,9 +31,18 @@ pub enum ReadErrorKind {
     /// The name of the file does not tell its format.
     #[error("the format is unknown; known are .csg, .scad, .obj, .stl and .off")]
     UnknownFormat,
-    /// The file is longer than places in it can be counted.
-    #[error("the file has {0} bytes; at most 4294967295 are read")]
+    /// The text is longer than places in it can be counted.
+    #[error("the text has {0} bytes; at most 4294967295 are read")]
     TooLong(usize),
+    /// The file, or the file and what it imports, is longer than
+    /// [`ReadOptions::max_bytes`](super::ReadOptions::max_bytes).
+    #[error(
+        "there are more bytes to read than the limit of {limit}; --max-bytes raises it"
+    )]
+    TooManyBytes {
+        /// The limit.
+        limit: u64,
+    },
     /// The text breaks the grammar.
     #[error("expected {expected}, found {found}")]
     Syntax {
@@ -66,14 +75,15 @@ pub enum ReadErrorKind {
     /// The points and faces do not bound a solid.
     #[error("{0}")]
     Mesh(MeshError),
-    /// The curves would have more facets than a model can reasonably have.
+    /// Curves and polygons would have more triangles than
+    /// [`ReadOptions::max_facets`](super::ReadOptions::max_facets).
     #[error(
-        "the facets are too many: with this one the curves have {count} triangles, at most {limit} are made"
+        "with this one, curves and polygons have {count} triangles, which is more than the limit of {limit}; --max-facets raises it"
     )]
     TooManyFacets {
         /// How many there would be.
         count: u64,
-        /// How many there may be.
+        /// The limit.
         limit: u64,
     },
     /// A binary file that ends before it should.

@@ -12,6 +12,7 @@
 
 mod error;
 mod faces;
+mod load;
 mod model;
 mod obj;
 mod off;
@@ -33,6 +34,7 @@ pub use options::{Curves, Format, ReadOptions};
 
 use error::Located;
 use faces::Faces;
+use load::Budget;
 
 /// Reads a file.
 ///
@@ -52,11 +54,15 @@ use faces::Faces;
 pub fn file(path: &Path, options: &ReadOptions) -> Result<Model, ReadError> {
     let named = |kind| Located::nowhere(kind).named(path);
     let format = options.format.or_else(|| Format::of(path));
-    match format.ok_or_else(|| named(ReadErrorKind::UnknownFormat))? {
+    let format = format.ok_or_else(|| named(ReadErrorKind::UnknownFormat))?;
+    let load = || Budget::new(options.max_bytes).load(path).map_err(named);
+    match format {
         Format::Scad => scad::file(path, options),
-        format @ (Format::Csg | Format::Obj | Format::Stl | Format::Off) => {
-            let text = std::fs::read(path).map_err(|e| named(ReadErrorKind::Io(e)))?;
-            bytes(&text, path, format, options)
+        Format::Csg => bytes(&load()?, path, format, options),
+        Format::Obj | Format::Stl | Format::Off => {
+            // The text is not kept while the mesh is built.
+            let faces = mesh(&load()?, format);
+            built(faces, path)
         }
     }
 }
@@ -73,22 +79,24 @@ pub fn bytes(
     format: Format,
     options: &ReadOptions,
 ) -> Result<Model, ReadError> {
+    let fits = Budget::new(options.max_bytes).spend(bytes);
+    fits.map_err(|kind| Located::nowhere(kind).named(path))?;
     match format {
         Format::Csg => openscad::read(bytes, path, options),
         Format::Scad => scad::bytes(bytes, path, options),
-        Format::Obj | Format::Stl | Format::Off => {
-            let found = mesh(bytes, format).and_then(Faces::build);
-            let built = found.map_err(|error| error.named(path))?;
-            let mut model = Model { solid: Solid::mesh(built.mesh), ..Model::default() };
-            if built.turned {
-                model.counts.turned = 1;
-                model
-                    .warnings
-                    .push(Warning { place: None, message: faces::TURNED.to_owned() });
-            }
-            Ok(model)
-        }
+        Format::Obj | Format::Stl | Format::Off => built(mesh(bytes, format), path),
     }
+}
+
+/// The model of a mesh file.
+fn built(faces: Result<Faces, Located>, path: &Path) -> Result<Model, ReadError> {
+    let built = faces.and_then(Faces::build).map_err(|error| error.named(path))?;
+    let mut model = Model { solid: Solid::mesh(built.mesh), ..Model::default() };
+    if built.turned {
+        model.counts.turned = 1;
+        model.warnings.push(Warning { place: None, message: faces::TURNED.to_owned() });
+    }
+    Ok(model)
 }
 
 /// The points and faces of a mesh file.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// How to read.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadOptions {
     /// What becomes of OpenSCAD's circles, cylinders and spheres.
     pub curves: Curves,
@@ -11,6 +11,26 @@ pub struct ReadOptions {
     pub openscad: Option<PathBuf>,
     /// The format; when there is none, the file's name tells.
     pub format: Option<Format>,
+    /// The most bytes that are read, of a file and all that it imports together. What is read
+    /// takes at most some 20 times as much memory as its text.
+    pub max_bytes: u64,
+    /// The most triangles that are made of curves and polygons, of which a line of text can
+    /// ask for any number. One takes some 130 bytes.
+    pub max_facets: u64,
+}
+
+impl Default for ReadOptions {
+    /// `Curves::Auto`; 1 GiB, which as binary `.stl` is 21 million triangles; and 30 million
+    /// facets.
+    fn default() -> Self {
+        Self {
+            curves: Curves::default(),
+            openscad: None,
+            format: None,
+            max_bytes: 1 << 30,
+            max_facets: 30_000_000,
+        }
+    }
 }
 
 /// What becomes of OpenSCAD's circles, cylinders and spheres, which it defines as

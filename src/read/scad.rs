@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use super::error::{Located, ReadError, ReadErrorKind};
+use super::load::Budget;
 use super::{Model, ReadOptions, Warning, openscad};
 
 /// Reads a file. Places in messages are those of the `.csg` that OpenSCAD makes of it.
@@ -60,7 +61,11 @@ fn converted(
         let status = output.status.to_string();
         return Err(fault(ReadErrorKind::OpenscadFailed { status, stderr: said }));
     }
-    let text = std::fs::read(&csg).map_err(|_| {
+    let loaded = Budget::new(options.max_bytes).load(&csg);
+    let text = loaded.map_err(|kind| {
+        if !matches!(kind, ReadErrorKind::Io(_)) {
+            return fault(kind);
+        }
         let status = "it ended well, but wrote nothing".to_owned();
         fault(ReadErrorKind::OpenscadFailed { status, stderr: said.clone() })
     })?;

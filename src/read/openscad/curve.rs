@@ -10,10 +10,6 @@ use super::evaluate::Reading;
 use crate::mesh::Mesh;
 use crate::solid::Solid;
 
-/// How many triangles faceted curves may have together. One line of text can ask for
-/// any number; this one takes about 3 GB.
-const MOST_FACETS: u64 = 30_000_000;
-
 /// A faceted curve with all its sizes: equal ones share one mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Key {
@@ -95,12 +91,8 @@ impl Round {
         if let Some(mesh) = reading.curves.get(&key) {
             return Ok(mesh.clone());
         }
-        reading.facets = reading.facets.saturating_add(triangles);
+        reading.count_facets(triangles, call.place())?;
         let fault = |kind| Located::at(call.place(), kind);
-        let (count, limit) = (reading.facets, MOST_FACETS);
-        if count > limit {
-            return Err(fault(ReadErrorKind::TooManyFacets { count, limit }));
-        }
         let mesh = match self {
             Self::Ball { radius } => tessellate::ball(segments, radius),
             Self::Frustum { radii, heights } => {

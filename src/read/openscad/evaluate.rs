@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::super::error::{Located, ReadErrorKind};
+use super::super::load::Budget;
 use super::super::{Model, ReadOptions, Warning};
 use super::arguments::Call;
 use super::combine;
@@ -24,13 +25,25 @@ pub(super) struct Reading<'a> {
     pub(super) model: Model,
     /// The faceted curves made so far, because models repeat their screws.
     pub(super) curves: HashMap<Key, Arc<Mesh>>,
-    /// The triangles in them.
-    pub(super) facets: u64,
+    /// The triangles in them and in polygons.
+    facets: u64,
     /// The files imported so far.
     pub(super) imports: HashMap<PathBuf, Arc<Mesh>>,
+    /// How much may still be imported.
+    pub(super) budget: Budget,
 }
 
 impl Reading<'_> {
+    /// Counts triangles that a curve or polygon at this place is made of.
+    pub(super) fn count_facets(&mut self, more: u64, at: Place) -> Result<(), Located> {
+        self.facets = self.facets.saturating_add(more);
+        let (count, limit) = (self.facets, self.options.max_facets);
+        if count > limit {
+            return Err(Located::at(at, ReadErrorKind::TooManyFacets { count, limit }));
+        }
+        Ok(())
+    }
+
     pub(super) fn warn(&mut self, place: Place, message: impl Into<String>) {
         let message = message.into();
         self.model.warnings.push(Warning { place: Some(place), message });
@@ -50,6 +63,8 @@ pub(super) fn model(
     path: &Path,
     options: &ReadOptions,
 ) -> Result<Model, Located> {
+    let mut budget = Budget::new(options.max_bytes);
+    budget.spend(document.text).map_err(Located::nowhere)?;
     let mut reading = Reading {
         options,
         folder: path.parent().unwrap_or(Path::new("")),
@@ -57,6 +72,7 @@ pub(super) fn model(
         curves: HashMap::new(),
         facets: 0,
         imports: HashMap::new(),
+        budget,
     };
     let (next, end) = content(document);
     let shapes = shapes(document, next, end, &mut reading)?;

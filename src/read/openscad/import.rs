@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::super::error::{Located, ReadError, ReadErrorKind};
 use super::super::faces::{Faces, TURNED};
+use super::super::load::Budget;
 use super::super::options::Format;
 use super::arguments::Call;
 use super::evaluate::Reading;
@@ -29,9 +30,10 @@ pub(super) fn import(
     let mesh = match reading.imports.get(&path) {
         Some(mesh) => mesh.clone(),
         None => {
-            let (mesh, turned) = load(&path, format).map_err(|error| {
-                Located::at(call.place(), ReadErrorKind::Import(Box::new(error)))
-            })?;
+            let (mesh, turned) =
+                load(&path, format, &mut reading.budget).map_err(|error| {
+                    Located::at(call.place(), ReadErrorKind::Import(Box::new(error)))
+                })?;
             if turned {
                 reading.model.counts.turned += 1;
                 reading.warn(call.place(), format!("{}: {TURNED}", path.display()));
@@ -43,11 +45,16 @@ pub(super) fn import(
     Ok(Shape::Solid(Solid::mesh(mesh).placed(call.place())))
 }
 
-fn load(path: &Path, format: Format) -> Result<(Arc<Mesh>, bool), ReadError> {
-    let read = || {
-        let bytes =
-            std::fs::read(path).map_err(|e| Located::nowhere(ReadErrorKind::Io(e)))?;
-        let built = super::super::mesh(&bytes, format).and_then(Faces::build)?;
+fn load(
+    path: &Path,
+    format: Format,
+    budget: &mut Budget,
+) -> Result<(Arc<Mesh>, bool), ReadError> {
+    let mut read = || {
+        let bytes = budget.load(path).map_err(Located::nowhere)?;
+        let faces = super::super::mesh(&bytes, format);
+        drop(bytes);
+        let built = faces.and_then(Faces::build)?;
         Ok((Arc::new(built.mesh), built.turned))
     };
     read().map_err(|error: Located| error.named(path))

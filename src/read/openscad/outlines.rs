@@ -73,7 +73,10 @@ pub(super) fn polygon(
     };
     warn_of_dropped(call, dropped, reading);
     match Mesh::prism(&paths, 0.0, 1.0) {
-        Ok(mesh) => Ok(Shape::Flat(Solid::mesh(mesh).placed(call.place()))),
+        Ok(mesh) => {
+            reading.count_facets(mesh.faces().len() as u64, call.place())?;
+            Ok(Shape::Flat(Solid::mesh(mesh).placed(call.place())))
+        }
         Err(MeshError::NoFaces) => Ok(Shape::Empty),
         Err(error) => Err(Located::at(call.place(), ReadErrorKind::Mesh(error))),
     }
