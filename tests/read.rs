@@ -693,3 +693,31 @@ fn counts_without_content_cost_nothing() {
     let csg = "polyhedron([[0,0,0],[1,0,0],[0,1,0]], [[0, 1, 4294967295, 1e300]]);";
     assert!(bytes(csg, Format::Csg).is_ok_and(|model| model.warnings.len() == 1));
 }
+
+/// A face that crosses itself is no polygon. That is seen at the first crossing; to cut its
+/// edges at all of them would take thousands of times as long.
+#[test]
+fn faces_that_cross_themselves_take_no_longer_than_others() {
+    const CORNERS: u32 = 300;
+    /// A face and its reverse, many times: the corners are on a circle and a smaller one in
+    /// turn, and each is joined to the one so many steps on.
+    fn seconds(step: u32) -> f64 {
+        let mut off = format!("OFF {CORNERS} 100 0\n");
+        for i in 0..CORNERS {
+            let angle = f64::from(i) / f64::from(CORNERS) * std::f64::consts::TAU;
+            let radius = if i % 2 == 0 { 1.0 } else { 0.9 };
+            off += &format!("{} {} 0\n", radius * angle.cos(), radius * angle.sin());
+        }
+        let mut ring: Vec<String> =
+            (0..CORNERS).map(|i| (i * step % CORNERS).to_string()).collect();
+        for _ in 0..100 {
+            off += &format!("{CORNERS} {}\n", ring.join(" "));
+            ring.reverse();
+        }
+        let start = std::time::Instant::now();
+        assert!(bytes(off, Format::Off).is_ok());
+        start.elapsed().as_secs_f64()
+    }
+    let (simple, star) = (seconds(1), seconds(149));
+    assert!(star < 20.0 * simple, "{star} s for stars, {simple} s for polygons");
+}

@@ -50,6 +50,17 @@ type Plane = ConstrainedDelaunayTriangulation<Point2<f64>>;
 /// [`MeshError::NotFinite`], and [`MeshError::Tangled`] when crossings are too many or too
 /// close to each other for the precision of coordinates.
 pub(super) fn even_odd(paths: &[Vec<DVec2>]) -> Result<Fill, MeshError> {
+    filled(paths, WORK)
+}
+
+/// The same for a path whose edges do not cross; [`MeshError::Tangled`] for any other, found
+/// without cutting it.
+pub(super) fn without_crossings(path: Vec<DVec2>) -> Result<Fill, MeshError> {
+    filled(&[path], 0)
+}
+
+/// The fill, if it takes no more than some work.
+fn filled(paths: &[Vec<DVec2>], work: usize) -> Result<Fill, MeshError> {
     let mut points = Points::new(paths)?;
     let mut edges = Vec::new();
     for path in paths {
@@ -58,7 +69,7 @@ pub(super) fn even_odd(paths: &[Vec<DVec2>]) -> Result<Fill, MeshError> {
         let next = corners.iter().cycle().skip(1);
         edges.extend(corners.iter().zip(next).map(|(&a, &b)| [a, b]));
     }
-    let (given, mut left) = (points.exact.len(), WORK);
+    let (given, mut left) = (points.exact.len(), work);
     for _ in 0..ROUNDS {
         let mut edges_once = modulo_two(std::mem::take(&mut edges));
         let Some(mut plane) = plane(&points) else { break };

@@ -78,7 +78,7 @@ fn sees_all(p: &[DVec2]) -> bool {
 /// The triangles of a simple counter-clockwise polygon; none for any other.
 fn simple(ring: Vec<DVec2>) -> Option<Vec<[u32; 3]>> {
     let corners = ring.len();
-    let fill = fill::even_odd(&[ring]).ok()?;
+    let fill = fill::without_crossings(ring).ok()?;
     // The fill is bounded by the ring itself exactly if the ring is simple.
     let is_side = |[a, b]: &[u32; 2]| (*a as usize + 1) % corners == *b as usize;
     let is_ring = fill.boundary.len() == corners && fill.boundary.iter().all(is_side);
