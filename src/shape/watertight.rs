@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 
-use super::{Event, IndexedMesh, Line, Shape, Sink};
+use super::{Chain, Event, IndexedMesh, Line, Shape, Sink};
 use crate::aabb::Aabb;
 use crate::mesh::Mesh;
 use crate::ray::{Ray, Sense};
@@ -44,7 +44,8 @@ impl Case {
     fn mapped(name: &'static str, mesh: Mesh, map: DAffine3) -> Self {
         let mesh = Arc::new(mesh);
         let indexed = Arc::new(IndexedMesh::new(mesh.clone()));
-        let placed = Shape::place_mesh(indexed, map).expect("a regular map");
+        let placed = Shape::place_mesh(indexed, &Chain::NOTHING.then(&map))
+            .expect("a regular map");
         Self { name, mesh, map, shape: placed.shape, bounds: placed.bounds }
     }
 
