@@ -10,7 +10,7 @@ use super::intern::Surfaces;
 use super::options::CompileOptions;
 use super::program::{Combine, Literal, Program};
 use super::sheet::Extent;
-use super::weld::{NearMisses, Refusal, Weld, rounded_up};
+use super::weld::{NearMisses, Refusal, Weld};
 use super::{Part, Scene, digits};
 use crate::aabb::Aabb;
 use crate::bvh::Bvh;
@@ -452,8 +452,6 @@ impl Compiler {
         weld: f64,
         moved: &[f64],
     ) -> Result<NearMisses, CompileError> {
-        /// How often a larger weld is tried.
-        const TRIES: usize = 8;
         let nothing = NearMisses { pairs: Vec::new(), weld: None };
         let Some(Outline { extents, boxes }) = self.outline()? else {
             return Ok(nothing);
@@ -465,20 +463,11 @@ impl Compiler {
         }
         let pairs = surfaces.near_misses(&extents, &boxes, moved);
         let Some(farthest) = pairs.first() else { return Ok(nothing) };
-        let mut tried = rounded_up(farthest.distance).max(weld);
-        for _ in 0..TRIES {
-            let mut surfaces = Surfaces::new(&mut self.shapes, &extents);
-            let next = match surfaces.weld(tried, &extents, &boxes) {
-                Ok(_) if pairs.iter().all(|pair| surfaces.are_one(pair)) => {
-                    return Ok(NearMisses { pairs, weld: Some(tried) });
-                }
-                Ok(_) => 1.25 * tried,
-                Err(refusal) if refusal.apart > tried => refusal.apart,
-                Err(_) => break,
-            };
-            tried = rounded_up(next);
-        }
-        Ok(NearMisses { pairs, weld: None })
+        // They are to be joined from where they were, each up to a weld away.
+        let least = farthest.distance + 2.0 * weld;
+        let surfaces = Surfaces::new(&mut self.shapes, &extents);
+        let weld = surfaces.large_enough(least, &extents, &boxes);
+        Ok(NearMisses { pairs, weld })
     }
 
     /// Keeps for the search only what can matter: within the solid's reach, a leaf is as

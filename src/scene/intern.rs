@@ -109,16 +109,7 @@ impl Surfaces {
 
 impl<T: Sheet> Sheets<T> {
     fn new(faces: Vec<Face<T>>, extents: &[Extent]) -> Self {
-        let mut order: Vec<u32> = (0..).zip(&faces).map(|(i, _)| i).collect();
-        order.sort_by(|&a, &b| {
-            let [a, b] = [a, b].map(|i| &faces[i as usize]);
-            let [near, far] = [a, b].map(|face| extents[face.leaf as usize]);
-            far.radius
-                .total_cmp(&near.radius)
-                .then_with(|| compare(&a.surface.numbers(), &b.surface.numbers()))
-                .then_with(|| compare(&near.center.to_array(), &far.center.to_array()))
-                .then_with(|| near.rounding.total_cmp(&far.rounding))
-        });
+        let order = in_order(&faces, extents);
         let mut table = Table::new(extents);
         let mut sheets = Self {
             scale: table.scale,
@@ -200,6 +191,31 @@ impl Sheets<Wall> {
         }
         walls
     }
+}
+
+/// The numbers of the faces from the largest leaf to the smallest. Leaves of one size come
+/// in the order of what is known of them, and the faces of a leaf in that of their numbers.
+fn in_order<T: Sheet>(faces: &[Face<T>], extents: &[Extent]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..).zip(faces).map(|(i, _)| i).collect();
+    let numbers = |&i: &u32| faces[i as usize].surface.numbers();
+    let mut leaves: Vec<&mut [u32]> = order
+        .chunk_by_mut(|&a, &b| faces[a as usize].leaf == faces[b as usize].leaf)
+        .collect();
+    for own in &mut leaves {
+        own.sort_by(|a, b| compare(&numbers(a), &numbers(b)));
+    }
+    leaves.sort_by(|a, b| {
+        let [near, far] =
+            [a, b].map(|own| &extents[faces[own[0] as usize].leaf as usize]);
+        let known =
+            |e: &Extent| [-e.radius, e.center.x, e.center.y, e.center.z, e.rounding];
+        let surfaces = || a.iter().map(numbers).zip(b.iter().map(numbers));
+        let differ =
+            || surfaces().map(|(a, b)| compare(&a, &b)).find(|order| order.is_ne());
+        compare(&known(near), &known(far))
+            .then_with(|| differ().unwrap_or(a.len().cmp(&b.len())))
+    });
+    leaves.into_iter().flat_map(|own| own.iter().copied()).collect()
 }
 
 /// An order of lists of numbers.

@@ -15,6 +15,15 @@ pub(super) struct Cell {
     pub(super) high: [f64; AXES],
 }
 
+/// Cells, to be asked which of them overlap.
+pub(super) struct Cells {
+    cells: Vec<Cell>,
+    /// Their numbers in the order of the tree.
+    items: Vec<usize>,
+    /// The root first.
+    nodes: Vec<Node>,
+}
+
 /// A node of the tree of cells: an end if it has no children.
 struct Node {
     around: Cell,
@@ -25,24 +34,64 @@ struct Node {
 /// Ends are not split any further at this number of cells.
 const FEW: usize = 8;
 
-/// Calls `visit` with the numbers of every two cells that overlap, the smaller first.
-pub(super) fn overlaps(cells: &[Cell], mut visit: impl FnMut(usize, usize)) {
-    let mut items: Vec<usize> = (0..cells.len()).collect();
-    let nodes = tree(cells, &mut items);
-    let mut open = Vec::new();
-    for (i, cell) in cells.iter().enumerate() {
+impl Cells {
+    pub(super) fn new(cells: Vec<Cell>) -> Self {
+        let mut items: Vec<usize> = (0..cells.len()).collect();
+        let nodes = tree(&cells, &mut items);
+        Self { cells, items, nodes }
+    }
+
+    /// Calls `visit` with the numbers of every two cells that overlap, the smaller first.
+    pub(super) fn overlaps(&self, mut visit: impl FnMut(usize, usize)) {
+        let mut open = Vec::new();
+        for i in 0..self.cells.len() {
+            self.meeting(i, &mut open, |k| {
+                if i < k {
+                    visit(i, k);
+                }
+                true
+            });
+        }
+    }
+
+    /// Whether each cell overlaps another.
+    pub(super) fn have_company(&self) -> Vec<bool> {
+        let mut open = Vec::new();
+        let mut has_company = |i| {
+            let mut found = false;
+            self.meeting(i, &mut open, |k| {
+                found = k != i;
+                !found
+            });
+            found
+        };
+        (0..self.cells.len()).map(&mut has_company).collect()
+    }
+
+    /// Calls `visit` with the cells that overlap one, itself among them, as long as it says
+    /// to go on.
+    fn meeting(
+        &self,
+        i: usize,
+        open: &mut Vec<usize>,
+        mut visit: impl FnMut(usize) -> bool,
+    ) {
+        let cell = &self.cells[i];
+        open.clear();
         open.push(0);
         while let Some(at) = open.pop() {
-            let node = &nodes[at];
+            let node = &self.nodes[at];
             if !cell.meets(&node.around) {
                 continue;
             }
             match node.children {
                 Some(children) => open.extend(children),
-                None => items[node.range.clone()]
-                    .iter()
-                    .filter(|&&k| i < k && cell.meets(&cells[k]))
-                    .for_each(|&k| visit(i, k)),
+                None => {
+                    let here = &self.items[node.range.clone()];
+                    if !here.iter().all(|&k| !cell.meets(&self.cells[k]) || visit(k)) {
+                        return;
+                    }
+                }
             }
         }
     }
@@ -138,11 +187,14 @@ mod tests {
                 })
                 .collect();
             let mut found = Vec::new();
-            overlaps(&cells, |i, k| found.push((i, k)));
+            let tree = Cells::new(cells.clone());
+            tree.overlaps(|i, k| found.push((i, k)));
             found.sort_unstable();
             let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |k| (i, k)));
             let all: Vec<_> = pairs.filter(|&(i, k)| cells[i].meets(&cells[k])).collect();
             assert_eq!(found, all);
+            let is_met = |i| all.iter().any(|&(a, b)| a == i || b == i);
+            assert_eq!(tree.have_company(), (0..count).map(is_met).collect::<Vec<_>>());
         }
     }
 }

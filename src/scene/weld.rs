@@ -11,8 +11,10 @@
 //!
 //! None of this depends on the order of the leaves.
 
-use super::intern::{Sheets, Surfaces};
-use super::near::{Cell, overlaps};
+use glam::DVec3;
+
+use super::intern::{Face, Sheets, Surfaces};
+use super::near::{Cell, Cells};
 use super::sheet::{Extent, Sheet, foot, outside, width};
 use crate::aabb::Aabb;
 use crate::shape::{Plane, Wall};
@@ -62,6 +64,17 @@ pub(super) struct Refusal {
 /// How far from where they were given surfaces may be, by leaf.
 pub(super) type Reach<'a> = &'a dyn Fn(u32) -> f64;
 
+/// Where something is that has a box and lies somewhere else by up to `spread`.
+fn cell(around: Aabb, place: [f64; 3], spread: f64) -> Cell {
+    let [low, high] = [(around.min, -spread), (around.max, spread)].map(|(p, s)| {
+        let [a, b, c] = place.map(|x| x + s);
+        // No number is far away too.
+        [p.x, p.y, p.z, a, b, c]
+            .map(|x| if x.is_nan() { HUGE } else { x.clamp(-HUGE, HUGE) })
+    });
+    Cell { low, high }
+}
+
 /// Beyond this there is no telling where something is, and no need.
 const HUGE: f64 = 1e300;
 
@@ -104,20 +117,42 @@ impl Surfaces {
         let joined = self.planes.join(&planes, weld, extents, &mut moved);
         let joined =
             joined.and_then(|()| self.walls.join(&walls, weld, extents, &mut moved));
-        match joined {
-            Ok(()) => Ok((welds, moved)),
-            Err(refusal) => {
-                // What is fine for planes may not be for walls, so both are asked in turn.
-                let mut fine = weld;
-                let mut before = f64::INFINITY;
-                while fine < before {
-                    before = fine;
-                    fine = self.planes.largest_fine(&planes, fine, extents);
-                    fine = self.walls.largest_fine(&walls, fine, extents);
-                }
-                Err(Refusal { fine, ..refusal })
+        if let Err(refusal) = joined {
+            // What is fine for planes may not be for walls, so both are asked in turn.
+            let (mut fine, mut before) = (weld, f64::INFINITY);
+            while fine < before {
+                before = fine;
+                fine = self.planes.largest_fine(&planes, fine, extents);
+                fine = self.walls.largest_fine(&walls, fine, extents);
             }
+            return Err(Refusal { fine, ..refusal });
         }
+        Ok((welds, moved))
+    }
+
+    /// The least weld, no smaller than this, that is not refused, as far as larger ones are
+    /// refused because surfaces are too far apart: then as large a one is tried as it takes.
+    pub(super) fn large_enough(
+        &self,
+        weld: f64,
+        extents: &[Extent],
+        boxes: &[Aabb],
+    ) -> Option<f64> {
+        /// How often a larger weld is tried.
+        const TRIES: usize = 8;
+        let mut tried = rounded_up(weld);
+        for _ in 0..TRIES {
+            let reach = |_| 0.5 * tried;
+            let planes = self.planes.links(extents, boxes, &reach);
+            let walls = self.walls.links(extents, boxes, &reach);
+            let needs = self.planes.takes(&planes, tried, extents)?;
+            let needs = needs.max(self.walls.takes(&walls, tried, extents)?);
+            if needs <= tried {
+                return Some(tried);
+            }
+            tried = rounded_up(needs);
+        }
+        None
     }
 
     /// Pairs of surfaces that are no farther apart than some have moved: what the two have
@@ -146,23 +181,9 @@ impl Surfaces {
         });
         welds
     }
-
-    /// Whether two faces are one.
-    pub(super) fn are_one(&self, weld: &Weld) -> bool {
-        self.planes.are_one(weld) || self.walls.are_one(weld)
-    }
 }
 
 impl<T: Located> Sheets<T> {
-    fn are_one(&self, weld: &Weld) -> bool {
-        let find = |k: usize| {
-            let place = (weld.leaves[k], weld.faces[k]);
-            let found = self.faces.binary_search_by_key(&place, |f| (f.leaf, f.face));
-            found.ok().map(|i| self.leader[i])
-        };
-        find(0).is_some() && find(0) == find(1)
-    }
-
     /// The surfaces of different groups that are within reach of each other, the nearest
     /// first. The boxes are those of the leaves.
     pub(super) fn links(
@@ -171,24 +192,22 @@ impl<T: Located> Sheets<T> {
         boxes: &[Aabb],
         reach: Reach<'_>,
     ) -> Vec<Link> {
+        let places = self.places(extents, reach);
+        let company = self.company(&places);
         let (mut asked, mut cells) = (Vec::new(), Vec::new());
-        for (i, face) in (0..).zip(&self.faces) {
-            let extent = &extents[face.leaf as usize];
-            let own = reach(face.leaf) + extent.rounding;
-            let (place, spread) = self.led_by(i).located(own, extent, self.scale);
+        for ((i, face), &(place, spread)) in (0..).zip(&self.faces).zip(&places) {
+            if !company[self.leader[i as usize] as usize] {
+                continue;
+            }
+            let own = reach(face.leaf) + extents[face.leaf as usize].rounding;
             let grown = boxes[face.leaf as usize].grown(own);
-            let [low, high] =
-                [(grown.min, -spread), (grown.max, spread)].map(|(p, s)| {
-                    let [a, b, c] = place.map(|x| x + s);
-                    [p.x, p.y, p.z, a, b, c].map(|x| x.clamp(-HUGE, HUGE))
-                });
-            if !grown.is_empty() && !low.into_iter().chain(high).any(f64::is_nan) {
+            if !grown.is_empty() {
                 asked.push(i);
-                cells.push(Cell { low, high });
+                cells.push(cell(grown, place, spread));
             }
         }
         let mut links = Vec::new();
-        overlaps(&cells, |i, k| {
+        Cells::new(cells).overlaps(|i, k| {
             let [i, k] = [asked[i], asked[k]];
             links.extend(self.link(i, k, extents, reach));
         });
@@ -198,6 +217,33 @@ impl<T: Located> Sheets<T> {
             a.needs.total_cmp(&b.needs).then_with(|| ranks(a).cmp(&ranks(b)))
         });
         links
+    }
+
+    /// Where each surface lies, and how far from there those within its reach may be.
+    fn places(&self, extents: &[Extent], reach: Reach<'_>) -> Vec<([f64; 3], f64)> {
+        let place = |(i, face): (u32, &Face<T>)| {
+            let extent = &extents[face.leaf as usize];
+            let own = reach(face.leaf) + extent.rounding;
+            self.led_by(i).located(own, extent, self.scale)
+        };
+        (0..).zip(&self.faces).map(place).collect()
+    }
+
+    /// By leader: whether there is another group that lies alike, wherever its leaves are.
+    fn company(&self, places: &[([f64; 3], f64)]) -> Vec<bool> {
+        let mut spreads = vec![0.0_f64; places.len()];
+        for (&leader, &(_, spread)) in self.leader.iter().zip(places) {
+            let most = &mut spreads[leader as usize];
+            *most = most.max(spread);
+        }
+        let is_leader = |i: &usize| self.leader[*i] as usize == *i;
+        let leaders: Vec<usize> = (0..places.len()).filter(is_leader).collect();
+        let anywhere = Aabb::new(DVec3::ZERO, DVec3::ZERO);
+        let cells = leaders.iter().map(|&i| cell(anywhere, places[i].0, spreads[i]));
+        let found = Cells::new(cells.collect()).have_company();
+        let mut company = vec![false; places.len()];
+        leaders.into_iter().zip(found).for_each(|(i, has)| company[i] = has);
+        company
     }
 
     /// The link of two surfaces, if they are within reach of each other.
@@ -274,6 +320,44 @@ impl<T: Located> Sheets<T> {
         Ok(())
     }
 
+    /// The leaders of all surfaces when what is linked is joined.
+    fn united(&self, links: &[Link]) -> Vec<u32> {
+        let mut groups = self.leader.clone();
+        for link in links {
+            self.unite(&mut groups, link);
+        }
+        for i in 0..groups.len() {
+            let above = groups[i];
+            groups[i] = root(&mut groups, above);
+        }
+        groups
+    }
+
+    /// The surfaces that get another leader.
+    fn changed(&self, groups: &[u32]) -> Vec<u32> {
+        let pairs = (0..).zip(groups).zip(&self.leader);
+        pairs.filter(|((_, new), old)| new != old).map(|((i, _), _)| i).collect()
+    }
+
+    /// Which weld it takes to join what is linked, up to this weld; `None` if two faces of
+    /// one leaf would be one.
+    fn takes(&self, links: &[Link], weld: f64, extents: &[Extent]) -> Option<f64> {
+        let links = &links[..links.partition_point(|link| link.needs <= weld)];
+        let groups = self.united(links);
+        self.changed(&groups).into_iter().try_fold(0.0_f64, |most, i| {
+            let leader = groups[i as usize];
+            self.twin(&groups, i)
+                .is_none()
+                .then(|| most.max(self.needs(i, leader, extents)))
+        })
+    }
+
+    /// Another face of the same leaf in the same group.
+    fn twin(&self, groups: &[u32], i: u32) -> Option<u32> {
+        let leader = groups[i as usize];
+        self.of_leaf(i).find(|&own| own != i && groups[own as usize] == leader)
+    }
+
     /// The leaders of all surfaces when those are joined whose links need no more than the
     /// weld.
     fn joined(
@@ -282,19 +366,9 @@ impl<T: Located> Sheets<T> {
         weld: f64,
         extents: &[Extent],
     ) -> Result<Vec<u32>, Refusal> {
-        let mut groups = self.leader.clone();
         let links = &links[..links.partition_point(|link| link.needs <= weld)];
-        for link in links {
-            self.unite(&mut groups, link);
-        }
-        let numbers = || (0..).zip(&self.faces).map(|(i, _): (u32, _)| i);
-        for i in numbers() {
-            let leader = root(&mut groups, i);
-            groups[i as usize] = leader;
-        }
-        let mut changed: Vec<u32> = numbers()
-            .filter(|&i| groups[i as usize] != self.leader[i as usize])
-            .collect();
+        let groups = self.united(links);
+        let mut changed = self.changed(&groups);
         changed.sort_unstable_by_key(|&i| self.rank[i as usize]);
         for i in changed {
             let leader = groups[i as usize];
