@@ -131,7 +131,8 @@ impl<T: Sheet> Sheets<T> {
         let Face { surface, leaf, .. } = &self.faces[i as usize];
         let extent = &extents[*leaf as usize];
         let key = surface.key(table.scale);
-        let width = surface.key_width(SLACK * extent.rounding, extent, table.scale);
+        let apart = extent.rounding + table.rounding.min(SLACK * extent.rounding);
+        let width = surface.key_width(apart, extent, table.scale);
         let mut near = table.near(surface.class(), key, width);
         near.sort_unstable_by_key(|&leader| self.rank[leader as usize]);
         let found = near.into_iter().find(|&leader| {
@@ -142,6 +143,7 @@ impl<T: Sheet> Sheets<T> {
         });
         if found.is_none() {
             table.add(surface.class(), key, i);
+            table.rounding = table.rounding.max(extent.rounding);
         }
         self.leader[i as usize] = found.unwrap_or(i);
     }
@@ -228,6 +230,8 @@ fn compare(a: &[f64], b: &[f64]) -> std::cmp::Ordering {
 struct Table {
     /// The largest coordinate.
     scale: f64,
+    /// The largest rounding of a leader's leaf.
+    rounding: f64,
     keys: BTreeMap<(usize, Key), Vec<u32>>,
 }
 
@@ -253,7 +257,7 @@ impl Table {
     fn new(extents: &[Extent]) -> Self {
         let scale =
             extents.iter().map(|e| e.center.length() + e.radius).fold(0.0, f64::max);
-        Self { scale, keys: BTreeMap::new() }
+        Self { scale, rounding: 0.0, keys: BTreeMap::new() }
     }
 
     /// The leaders whose key is within `width` of `key`.
