@@ -42,6 +42,12 @@ impl Aabb {
         Self::new(self.min - by, self.max + by)
     }
 
+    /// By how much two boxes are apart on the axis on which they are farthest; negative if
+    /// they overlap.
+    pub(crate) fn gap(&self, other: &Self) -> f64 {
+        (self.min - other.max).max(other.min - self.max).max_element()
+    }
+
     /// What two boxes have in common.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {

@@ -245,6 +245,23 @@ fn only_leaves_that_touch_are_welded() {
     assert_eq!(welded(&apart, 1e-2).welds(), []);
 }
 
+/// What lies alike is not joined by a weld that does not reach from leaf to leaf.
+#[test]
+fn a_suggested_weld_reaches_from_leaf_to_leaf() {
+    let text = "union() {
+multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 12.3456], [0, 0, 0, 1]])
+cube(size = [7.77777, 1, 1], center = false);
+multmatrix([[1, 0, 0, 7.7778], [0, 1, 0, 0], [0, 0, 1, 12.3457], [0, 0, 0, 1]])
+cube(size = [1.23456, 1, 1], center = false);
+}
+";
+    let solid = parsed(text);
+    let weld = suggested(&solid).expect("they nearly coincide");
+    let left = Scene::near_misses(&solid, &welding(weld)).expect("it is fine");
+    assert_eq!(left.pairs, []);
+    assert_eq!(welded(&solid, weld).welds().len(), 3);
+}
+
 #[test]
 fn a_chain_is_refused_with_its_leaves_and_a_weld_that_would_do() {
     let text = "union() {

@@ -461,10 +461,12 @@ impl Compiler {
             let welded = surfaces.weld(weld, &extents, &boxes);
             welded.map_err(|refusal| self.refused(&refusal, weld))?;
         }
-        let pairs = surfaces.near_misses(&extents, &boxes, moved);
-        let Some(farthest) = pairs.first() else { return Ok(nothing) };
+        let (pairs, needs) = surfaces.near_misses(&extents, &boxes, moved);
+        if pairs.is_empty() {
+            return Ok(nothing);
+        }
         // They are to be joined from where they were, each up to a weld away.
-        let least = farthest.distance + 2.0 * weld;
+        let least = needs + 2.0 * weld;
         let surfaces = Surfaces::new(&mut self.shapes, &extents);
         let weld = surfaces.large_enough(least, &extents, &boxes);
         Ok(NearMisses { pairs, weld })

@@ -43,9 +43,10 @@ pub struct NearMisses {
 /// Two surfaces of different groups, by number, and how far apart they are.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link {
-    /// The distance beyond what rounding explains; the least weld that joins them.
+    /// The least weld that joins them: the distance of the surfaces or, where that is
+    /// larger, of the leaves, beyond what rounding explains.
     needs: f64,
-    /// Which come first by rank.
+    /// The two, the one that comes first by rank before the other.
     near: u32,
     far: u32,
 }
@@ -113,7 +114,7 @@ impl Surfaces {
         let mut moved = vec![0.0; boxes.len()];
         let planes = self.planes.links(extents, boxes, &reach);
         let walls = self.walls.links(extents, boxes, &reach);
-        let welds = self.welds(&planes, &walls, extents);
+        let (welds, _) = self.pairs(&planes, &walls, extents);
         let joined = self.planes.join(&planes, weld, extents, &mut moved);
         let joined =
             joined.and_then(|()| self.walls.join(&walls, weld, extents, &mut moved));
@@ -156,30 +157,41 @@ impl Surfaces {
     }
 
     /// Pairs of surfaces that are no farther apart than some have moved: what the two have
-    /// together, by leaf.
+    /// together, by leaf. Also the least weld that joins each pair.
     pub(super) fn near_misses(
         &self,
         extents: &[Extent],
         boxes: &[Aabb],
         moved: &[f64],
-    ) -> Vec<Weld> {
+    ) -> (Vec<Weld>, f64) {
         if moved.iter().all(|&by| by <= 0.0) {
-            return Vec::new();
+            return (Vec::new(), 0.0);
         }
         let reach = |leaf: u32| moved[leaf as usize];
         let planes = self.planes.links(extents, boxes, &reach);
         let walls = self.walls.links(extents, boxes, &reach);
-        self.welds(&planes, &walls, extents)
+        self.pairs(&planes, &walls, extents)
     }
 
-    fn welds(&self, planes: &[Link], walls: &[Link], extents: &[Extent]) -> Vec<Weld> {
-        let mut welds = self.planes.welds(planes, extents);
-        welds.append(&mut self.walls.welds(walls, extents));
-        welds.sort_by(|a, b| {
+    /// As few pairs as it takes to join what is linked, those farthest apart first, and the
+    /// least weld that joins each.
+    fn pairs(
+        &self,
+        planes: &[Link],
+        walls: &[Link],
+        extents: &[Extent],
+    ) -> (Vec<Weld>, f64) {
+        let (planes, walls) = (self.planes.tree(planes), self.walls.tree(walls));
+        let needs = planes.iter().chain(&walls).map(|link| link.needs);
+        let needs = needs.fold(0.0, f64::max);
+        let mut pairs: Vec<Weld> =
+            planes.iter().map(|link| self.planes.weld(link, extents)).collect();
+        pairs.extend(walls.iter().map(|link| self.walls.weld(link, extents)));
+        pairs.sort_by(|a, b| {
             let place = |weld: &Weld| (weld.leaves, weld.faces);
             b.distance.total_cmp(&a.distance).then_with(|| place(a).cmp(&place(b)))
         });
-        welds
+        (pairs, needs)
     }
 }
 
@@ -208,8 +220,7 @@ impl<T: Located> Sheets<T> {
         }
         let mut links = Vec::new();
         Cells::new(cells).overlaps(|i, k| {
-            let [i, k] = [asked[i], asked[k]];
-            links.extend(self.link(i, k, extents, reach));
+            links.extend(self.link([asked[i], asked[k]], extents, boxes, reach));
         });
         links.sort_unstable_by(|a, b| {
             let ranks =
@@ -247,14 +258,23 @@ impl<T: Located> Sheets<T> {
     }
 
     /// The link of two surfaces, if they are within reach of each other.
-    fn link(&self, i: u32, k: u32, extents: &[Extent], reach: Reach<'_>) -> Option<Link> {
+    fn link(
+        &self,
+        [i, k]: [u32; 2],
+        extents: &[Extent],
+        boxes: &[Aabb],
+        reach: Reach<'_>,
+    ) -> Option<Link> {
         let [leaf, other] = [i, k].map(|i| self.faces[i as usize].leaf);
         if leaf == other || self.leader[i as usize] == self.leader[k as usize] {
             return None;
         }
         let first = self.rank[i as usize] < self.rank[k as usize];
         let (near, far) = if first { (i, k) } else { (k, i) };
-        let needs = self.needs(far, near, extents);
+        let [own, others] = [leaf, other].map(|leaf| leaf as usize);
+        let rounding = extents[own].rounding + extents[others].rounding;
+        let gap = boxes[own].gap(&boxes[others]) - rounding;
+        let needs = self.needs(far, near, extents).max(gap);
         let within = reach(leaf) + reach(other);
         (needs <= within && within > 0.0).then_some(Link { needs, near, far })
     }
@@ -274,18 +294,18 @@ impl<T: Located> Sheets<T> {
     }
 
     /// As few links as it takes to join what is linked, the nearest where there is a choice.
-    pub(super) fn welds(&self, links: &[Link], extents: &[Extent]) -> Vec<Weld> {
+    fn tree(&self, links: &[Link]) -> Vec<Link> {
         let mut groups = self.leader.clone();
-        let joined = links.iter().filter(|link| self.unite(&mut groups, link));
-        let weld = |link: &Link| {
-            let faces = [link.near, link.far].map(|i| &self.faces[i as usize]);
-            Weld {
-                leaves: faces.map(|face| face.leaf),
-                faces: faces.map(|face| face.face),
-                distance: self.distance(link, extents),
-            }
-        };
-        joined.map(weld).collect()
+        links.iter().filter(|link| self.unite(&mut groups, link)).copied().collect()
+    }
+
+    fn weld(&self, link: &Link, extents: &[Extent]) -> Weld {
+        let faces = [link.near, link.far].map(|i| &self.faces[i as usize]);
+        Weld {
+            leaves: faces.map(|face| face.leaf),
+            faces: faces.map(|face| face.face),
+            distance: self.distance(link, extents),
+        }
     }
 
     /// Makes one group of the groups of two surfaces; whether there were two. A group's
