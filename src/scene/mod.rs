@@ -34,7 +34,8 @@ pub use weld::{NearMisses, Weld};
 /// A solid made ready for rays. No query on it can fail.
 ///
 /// Memory: at most 350 bytes a leaf and 110 a triangle beyond the solid it was compiled
-/// from, which can be dropped.
+/// from, which can be dropped. While it is compiled, a leaf takes up to 1,000 and a triangle
+/// no more than that.
 #[derive(Debug)]
 pub struct Scene {
     bounds: Aabb,
