@@ -48,7 +48,7 @@ pub(crate) struct Meeting {
 pub(crate) const U: f64 = 0.5 * f64::EPSILON;
 
 /// How many roundings of the lengths at hand an error is made of.
-const ROUNDINGS: f64 = 1.0;
+const ROUNDINGS: f64 = 4.0;
 
 /// The leaves of a model in the order of the tree.
 pub(crate) fn placed(model: &Model) -> Vec<Placed> {
@@ -157,6 +157,8 @@ impl Placed {
         let Polynomial { a, b, c } = surface.along(&line.origin, &line.dir);
         let zero = Real::exact(0.0);
         let blur = |t: &Real| self.blur(surface, line, t);
+        let bend = self.to_world(&surface.weighed(&line.dir)).length();
+        let slope_blur = |t: &Real| bend * self.rounding(line, t);
         if a.is_zero() && b.is_zero() {
             // Parallel: in or out for good, unless it runs as near as rounding.
             let t = line.closest();
@@ -167,7 +169,9 @@ impl Placed {
         }
         if a.is_zero() {
             let t = -(c / (&b + &b));
-            let error = blur(&t) / b.rounded().abs();
+            let is_steep = b.rounded().abs() >= 16.0 * slope_blur(&t);
+            let error =
+                if is_steep { blur(&t) / b.rounded().abs() } else { f64::INFINITY };
             let roots = vec![t.clone()];
             let meetings = vec![Meeting { t, error, crosses: true }];
             return Pass { starts_inside: b > zero, roots, meetings };
@@ -187,7 +191,10 @@ impl Placed {
                 Meeting { t: t.clone(), error, crosses: true }
             };
             let meetings: Vec<Meeting> = roots.iter().map(meeting).collect();
-            if meetings.iter().any(|meeting| 16.0 * meeting.error < gap) {
+            let is_steep = |m: &Meeting| {
+                16.0 * m.error < gap && root.rounded() >= 16.0 * slope_blur(&m.t)
+            };
+            if meetings.iter().any(is_steep) {
                 return Pass { starts_inside, roots, meetings };
             }
         }
@@ -195,12 +202,12 @@ impl Placed {
         // A cone's gradient vanishes at its apex, but grows along a line through it.
         let t = -(&b / &a);
         let height = (&c - &b * &b / &a).rounded().abs();
-        let growth = self.to_world(&surface.weighed(&line.dir)).length();
-        let growth = 2.0 * growth * self.rounding(line, &t) / a.rounded().abs();
-        let blur = 2.0 * blur(&t);
-        let touch = ((height + blur) / a.rounded().abs()).sqrt();
-        let meeting = Meeting { t, error: 2.0 * (touch + growth), crosses: false };
-        let touches = height <= 16.0 * blur || !roots.is_empty();
+        let (a, slope_blur, blur) = (a.rounded().abs(), slope_blur(&t), 2.0 * blur(&t));
+        let touches = !roots.is_empty()
+            || height <= 16.0 * blur
+            || a * height <= (16.0 * slope_blur).powi(2);
+        let error = 2.0 * (((height + blur) / a).sqrt() + 2.0 * slope_blur / a);
+        let meeting = Meeting { t, error, crosses: false };
         let meetings = if touches { vec![meeting] } else { Vec::new() };
         Pass { starts_inside, roots, meetings }
     }
