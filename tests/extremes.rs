@@ -10,9 +10,10 @@ use glam::{DAffine3, DVec3, dvec3};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use solidray::{Ray, Solid};
-use support::strategies::{aims, model};
-use support::{along_x, ends, ends_in, scene};
+use solidray::{Ray, Scene, Solid};
+use support::model::Model;
+use support::strategies::{aims, direction, model, place, placed_leaf};
+use support::{along_x, ends, ends_in, scene, spans};
 
 const U: f64 = 0.5 * f64::EPSILON;
 
@@ -203,8 +204,35 @@ fn a_line_almost_along_a_cylinder_is_as_exact_as_any() {
     assert_eq!(along, [[-(2.0_f64.powi(59)), 2.0_f64.powi(59)]]);
 }
 
+/// Factors that are no powers of two round the map, the sizes and the ray.
 #[test]
-fn scenes_scaled_by_a_power_of_two_give_the_same_bits() {
+fn n14_scenes_scaled_by_1e6_give_the_same_leaves_and_places_within_8_u() {
+    let mut compared = 0;
+    for (model, scene_of_one, ray) in clear_cases(500) {
+        for factor in [1e6, 1e-6] {
+            let grow = DAffine3::from_scale(DVec3::splat(factor));
+            let scaled = scene(&model.solid().mapped(grow));
+            let image = Ray::new(factor * ray.origin, factor * ray.dir);
+            let (plain, there) = (spans(&scene_of_one, &ray), spans(&scaled, &image));
+            assert_eq!(plain.len(), there.len(), "{factor:e} {ray:?} {model:?}");
+            for (a, b) in plain.iter().zip(&there) {
+                for (a, b) in [(a.enter, b.enter), (a.exit, b.exit)] {
+                    assert_eq!((a.leaf, a.face, a.sense), (b.leaf, b.face, b.sense));
+                    let normal = scene_of_one.normal_at(&ray, &a);
+                    let cosine = normal.dot(ray.dir).abs() / ray.speed();
+                    let lengths = length_at_hand(&scene_of_one, &ray) / ray.speed();
+                    let allowed = 8.0 * U * (a.t.abs() + lengths) / cosine;
+                    assert!((a.t - b.t).abs() <= allowed, "{a:?} {b:?} {ray:?}");
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 300, "{compared}");
+}
+
+#[test]
+fn n14_scenes_scaled_by_a_power_of_two_give_the_same_bits() {
     let mut runner = TestRunner::deterministic();
     let cases = (model(), aims());
     for _ in 0..200 {
@@ -223,8 +251,66 @@ fn scenes_scaled_by_a_power_of_two_give_the_same_bits() {
     }
 }
 
+/// Lines that are clear of edges and grazes.
+fn clear_cases(count: u32) -> impl Iterator<Item = (Model, Scene, Ray)> {
+    let mut runner = TestRunner::deterministic();
+    let cases = (placed_leaf(), place(), direction());
+    std::iter::repeat_with(move || {
+        let case = cases.new_tree(&mut runner).expect("nothing is rejected");
+        let (model, through, dir) = case.current();
+        let scene = scene(&model.solid());
+        let ray = Ray::new(through - 3.0 * dir, dir);
+        (model, scene, ray)
+    })
+    .take(count as usize)
+    .filter(|(_, scene, ray)| {
+        let spans = spans(scene, ray);
+        let mut ends = spans.iter().flat_map(|s| [s.enter, s.exit]);
+        ends.all(|c| scene.error_at(ray, &c) * ray.speed() < 1e-12)
+    })
+}
+
+/// The largest coordinate that is at hand along a ray.
+fn length_at_hand(scene: &Scene, ray: &Ray) -> f64 {
+    let bounds = scene.bounds();
+    bounds.min.abs().max(bounds.max.abs()).max_element() + ray.origin.length()
+}
+
 #[test]
-fn zeros_of_either_sign_and_the_smallest_numbers_are_directions_like_others() {
+fn n11_moving_the_origin_back_by_2_to_the_k_keeps_lengths_within_4_u_of_the_way() {
+    let mut compared = 0;
+    for (_, scene, ray) in clear_cases(500) {
+        let plain = spans(&scene, &ray);
+        for power in 0..=30 {
+            let back = 2.0_f64.powi(power);
+            let moved = Ray::new(ray.origin - back * ray.dir, ray.dir);
+            // The origin itself is rounded, and the line with it.
+            let aside = (moved.origin + back * ray.dir - ray.origin).length()
+                + U * moved.origin.length();
+            let there = spans(&scene, &moved);
+            if there.len() != plain.len() {
+                continue;
+            }
+            for (a, b) in plain.iter().zip(&there) {
+                let doubt: f64 = [a.enter, a.exit]
+                    .iter()
+                    .map(|c| {
+                        let cosine = scene.normal_at(&ray, c).dot(ray.dir) / ray.speed();
+                        2.0 * scene.error_at(&ray, c)
+                            + 2.0 * aside / ray.speed() / cosine.abs()
+                    })
+                    .sum();
+                let error = (a.length() - b.length()).abs();
+                assert!(error <= 4.0 * U * back + doubt, "{back}: {a:?} {b:?} {ray:?}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 3000, "{compared}");
+}
+
+#[test]
+fn n12_zeros_of_either_sign_and_the_smallest_numbers_are_directions_like_others() {
     let solid = Solid::cuboid(DVec3::splat(2.0)) - Solid::cylinder(0.5, 3.0)
         + Solid::mesh(support::meshes::octahedron()).translated(dvec3(2.0, 0.0, 0.0));
     let scene = scene(&solid);
@@ -247,7 +333,7 @@ fn zeros_of_either_sign_and_the_smallest_numbers_are_directions_like_others() {
 }
 
 #[test]
-fn directions_may_be_as_long_or_short_as_they_like() {
+fn n13_directions_may_be_as_long_or_short_as_they_like() {
     for length in [1e-300, 1e-100, 1e100, 1e300] {
         let ray = Ray::new(dvec3(-10.0, 0.0, 0.0), dvec3(length, 0.0, 0.0));
         let list = ends(&Solid::ball(1.0), &ray);
@@ -258,7 +344,7 @@ fn directions_may_be_as_long_or_short_as_they_like() {
 
 /// Sizes by parameters or by a map, alone and in a scene 1e200 times as large.
 #[test]
-fn solids_may_be_as_long_or_short_as_they_like() {
+fn n13_solids_may_be_as_long_or_short_as_they_like() {
     let kinds = |size: f64| {
         [
             Solid::ball(size),
