@@ -210,7 +210,7 @@ fn first_hit_starts_at_the_origin() {
 }
 
 #[test]
-fn rays_that_are_no_rays_meet_nothing() {
+fn n13_rays_that_are_no_rays_meet_nothing() {
     for ray in [
         Ray::new(DVec3::ZERO, DVec3::ZERO),
         Ray::new(DVec3::NAN, DVec3::X),

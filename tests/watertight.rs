@@ -232,7 +232,7 @@ fn boxes_with_a_common_coordinate_are_one_wherever_they_are() {
 /// Their maps are multiplied out separately, so without one plane for both faces about a
 /// third would be parted by a rounding error and another third overlap.
 #[test]
-fn rotated_boxes_with_a_common_face_are_one_span() {
+fn n27_rotated_boxes_with_a_common_face_are_one_span() {
     let mut dice = Dice::new(9);
     for _ in 0..1000 {
         let map = DAffine3::from_mat3(dice.rotation());
@@ -253,7 +253,7 @@ fn again(leaf: &Solid) -> Solid {
 /// The same solid by another product of maps: what is left of it, in all of a thousand
 /// cases, is nothing, seen along lines through its corners and faces.
 #[test]
-fn copies_by_differently_written_maps_leave_nothing() {
+fn n26_copies_by_differently_written_maps_leave_nothing() {
     let mut dice = Dice::new(10);
     let leaves = [
         Solid::cuboid(dvec3(2.0, 3.0, 1.0)),
