@@ -17,6 +17,7 @@ use oracle::sweep::sweep;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use solidray::{Mesh, Op, Ray, Scene, Sense};
+use support::algebra::{equal_pairs, in_common_frame, union};
 use support::dice::Dice;
 use support::model::{Leaf, Model, Shared};
 use support::strategies::{op, symmetry};
@@ -229,6 +230,24 @@ proptest! {
         seed in any::<u64>(),
     ) {
         assert_equal(&bounded(tree), seed);
+    }
+
+    #[test]
+    fn n24_the_algebra_holds_bit_by_bit_on_a_lattice(
+        a in tree(prop_oneof![cuboid(), half_space()]),
+        b in tree(cuboid()),
+        c in tree(cuboid()),
+        seed in any::<u64>(),
+    ) {
+        let (a, all) = (bounded(a.clone()), union([a, b.clone(), c.clone()]));
+        let mut rays = Rays::new(&all, seed);
+        for (left, right) in equal_pairs(&a, &b, &c) {
+            let (left, right) = (in_common_frame(&left), in_common_frame(&right));
+            for _ in 0..4 {
+                let ray = rays.next();
+                prop_assert_eq!(ends_in(&left, &ray), ends_in(&right, &ray), "{:?}", ray);
+            }
+        }
     }
 
     #[test]

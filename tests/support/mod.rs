@@ -3,6 +3,7 @@
 //! A test file takes what it needs: `#[expect(dead_code, reason = "…")] mod support;`.
 
 pub(crate) mod aim;
+pub(crate) mod algebra;
 pub(crate) mod dice;
 pub(crate) mod meshes;
 pub(crate) mod model;
