@@ -16,13 +16,15 @@ use crate::ray::Ray;
 /// Ray/Sphere Intersection", Ray Tracing Gems, ch. 7, 2019). It depends on the line and the
 /// scene alone. It is a round number of steps along the direction: then it rounds nothing
 /// either where coordinates have few digits, and planes at whole millimetres are crossed at
-/// whole numbers. Elsewhere each coordinate is rounded once, however far away the ray starts:
-/// a line moved sideways by more would find chords of other lengths. The direction is scaled
-/// by a power of two, which rounds nothing.
+/// whole numbers. Elsewhere what rounding takes from the origin is kept beside it, so that
+/// chords of small solids are found as exactly far from the world's origin, and by rays from afar, as
+/// anywhere else. The direction is scaled by a power of two, which rounds nothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
     /// The point at `t = 0` of this line.
     pub(crate) origin: DVec3,
+    /// What is to be added to the origin.
+    pub(crate) rest: DVec3,
     /// The direction; its largest component is between a half and twice the size of the scene
     /// for all but denormal directions.
     pub(crate) dir: DVec3,
@@ -52,12 +54,8 @@ impl Line {
         }
         let width = (far - near).max(LEAST_WIDTH);
         let offset = coarse(0.5 * (near + far), width);
-        Some(Self {
-            origin: dir.mul_add(DVec3::splat(offset), ray.origin),
-            dir,
-            offset,
-            scale,
-        })
+        let [origin, rest] = advanced(ray.origin, offset, dir);
+        Some(Self { origin, rest, dir, offset, scale })
     }
 
     /// A place on this line as a place on the ray.
@@ -70,9 +68,9 @@ impl Line {
         t / self.scale - self.offset
     }
 
-    /// At most how far the true origin of the line is from this one, on each axis.
+    /// At most how far the true origin of the line is from `origin + rest`, on each axis.
     pub(super) fn rounding(&self) -> DVec3 {
-        U * self.origin.abs()
+        4.0 * U * U * ((self.offset * self.dir).abs() + self.origin.abs())
     }
 
     /// A bound for a place `t` on this line as a bound for it on the ray.
@@ -84,6 +82,28 @@ impl Line {
     pub(crate) fn slabs(&self, bounds: &Aabb) -> Slabs {
         Slabs::new(self.origin, self.dir, bounds)
     }
+}
+
+/// The point `origin + steps · dir` as a sum of two, the second smaller than the rounding of
+/// the first (T. J. Dekker, "A Floating-Point Technique for Extending the Available
+/// Precision", Numerische Mathematik 18, 1971; the sum is that of D. E. Knuth).
+fn advanced(origin: DVec3, steps: f64, dir: DVec3) -> [DVec3; 2] {
+    let way = steps * dir;
+    let (high, [a, b]) = (halves(DVec3::splat(steps)), halves(dir));
+    let lost_way = ((high[0] * a - way) + high[0] * b + high[1] * a) + high[1] * b;
+    let sum = origin + way;
+    let back = sum - origin;
+    let lost = (origin - (sum - back)) + (way - back);
+    let rest = lost + lost_way;
+    // Numbers too large to be split have no rest.
+    [sum, if rest.is_finite() { rest } else { DVec3::ZERO }]
+}
+
+/// Numbers as sums of two with half the digits.
+fn halves(x: DVec3) -> [DVec3; 2] {
+    let large = 134_217_729.0 * x;
+    let high = large - (large - x);
+    [high, x - high]
 }
 
 /// A line that only touches the bounds counts as being inside for this part of a step:

@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::Line;
 use super::chain::norm;
 use super::doubt::U;
 use crate::aabb::Aabb;
@@ -143,6 +144,11 @@ pub(crate) struct ToLocal {
 impl ToLocal {
     pub(crate) fn point(&self, world: DVec3) -> DVec3 {
         self.linear * (world - self.origin)
+    }
+
+    /// The origin of a line.
+    pub(super) fn origin_of(&self, line: &Line) -> DVec3 {
+        self.linear * ((line.origin - self.origin) + line.rest)
     }
 
     pub(crate) fn direction(&self, world: DVec3) -> DVec3 {

@@ -72,7 +72,7 @@ impl Plane {
         let (size, sign) = (self.normal.abs(), if self.above { -1.0 } else { 1.0 });
         let slope = self.normal.dot(line.dir);
         let slope_rounding = 4.0 * U * size.dot(line.dir.abs());
-        let value = (self.normal.dot(line.origin) - self.offset) + t * slope;
+        let value = t * slope - self.height_above(line);
         let rounding = slack * self.normal.length()
             + size.dot(line.rounding() + 4.0 * U * line.origin.abs())
             + 4.0 * U * self.offset.abs()
@@ -87,13 +87,18 @@ impl Plane {
         }
     }
 
+    /// How far the plane is above the origin of a line, in lengths of the normal.
+    fn height_above(&self, line: &Line) -> f64 {
+        (self.offset - self.normal.dot(line.origin)) - self.normal.dot(line.rest)
+    }
+
     /// From where to where a line is inside: half of it, all or nothing.
     ///
     /// A line within the plane is inside if it would be after a small move along the normal:
     /// solids on the two sides of a plane share such lines out.
     fn inside(&self, line: &Line) -> [f64; 2] {
         let speed = self.normal.dot(line.dir);
-        let to_plane = self.offset - self.normal.dot(line.origin);
+        let to_plane = self.height_above(line);
         if speed == 0.0 {
             return if (to_plane <= 0.0) == self.above {
                 [f64::NEG_INFINITY, f64::INFINITY]

@@ -100,7 +100,7 @@ impl Polyhedron {
 
 impl Surface for Polyhedron {
     fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
-        let origin = self.to_local.point(line.origin);
+        let origin = self.to_local.origin_of(line);
         let dir = self.to_local.direction(line.dir);
         let IndexedMesh { mesh, faces, scale } = &*self.mesh;
         let moves = DVec3::AXES.map(|axis| self.to_local.direction(axis));
@@ -202,9 +202,9 @@ impl Polyhedron {
         let moved = self.to_local.linear.abs()
             * (line.rounding()
                 + DVec3::splat(slack)
-                + 5.0 * U * away.abs()
+                + 6.0 * U * away.abs()
                 + 4.0 * U * t.abs() * line.dir.abs());
-        (self.to_local.point(line.origin), self.to_local.direction(line.dir), moved)
+        (self.to_local.origin_of(line), self.to_local.direction(line.dir), moved)
     }
 
     /// At most how wrong the mean of the places of three corners on a line is by its weights.

@@ -89,7 +89,7 @@ impl Wall {
 
     /// Moves the origin of a line to where the roots are best found.
     fn approach(&self, line: &Line) -> Approach {
-        let origin = self.to_local.point(line.origin);
+        let origin = self.to_local.origin_of(line);
         let dir = self.to_local.direction(line.dir);
         // Where the scene is far larger than the leaf, squares of steps are no numbers.
         let step = inverse_power_of_two(dir.abs().max_element());
@@ -145,7 +145,7 @@ impl Wall {
         let m = size
             * (line.rounding()
                 + DVec3::splat(slack)
-                + 5.0 * U * away
+                + 6.0 * U * away
                 + 4.0 * U * spot.t.abs() * line.dir.abs())
             + 4.0 * U * (origin.abs() + (way + t.abs()) * dir.abs());
         let [zz, z, _] = self.profile.coefficients();
