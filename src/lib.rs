@@ -48,7 +48,14 @@
 //! Coordinates are `f64`. Lengths are whatever unit the model uses, millimetres by
 //! OpenSCAD's custom; angles are radians unless a name ends in `_deg`. The Boolean algebra
 //! has no tolerance: crossings at the same `t` are toggled together, and a boundary is
-//! reported only where the solid's inside changes.
+//! reported only where the solid's inside changes. Surfaces that coincide but for rounding
+//! are made one when a scene is compiled.
+//!
+//! [`Scene::error_at`] bounds the error of a crossing, with regard to the solid as it was
+//! said. [`Tracer::uncertain`] counts spans that are thinner than that. [`Tracer::classify`]
+//! tells points that are as near to the boundary from those inside and outside.
+//! [`Tracer::next_hit`] starts a ray where another ended. How errors grow towards the
+//! extremes, for each primitive, is drawn by `cargo run --release --example stability`.
 //!
 //! # Features
 //!

@@ -80,9 +80,9 @@ impl Axis {
     pub(crate) fn floor(self, x: f64) -> f64 {
         const U: f64 = 0.5 * f64::EPSILON;
         match self {
-            Self::Distance | Self::Offset => 0.35 * U * x,
+            Self::Distance => 0.35 * U * x,
             Self::Grazing | Self::Tilt => 0.35 * U / x,
-            Self::Scale => 0.35 * U,
+            Self::Scale | Self::Offset => 0.35 * U,
         }
     }
 
@@ -109,7 +109,7 @@ impl Axis {
             Self::Grazing => Ray::new(shape.middle + (1.0 - x) * side - level, level),
             Self::Tilt => {
                 // The solid is as long as it takes, and the ray starts within.
-                scale.z = 2.0_f64.powi(44);
+                scale.z = 4.0 / x;
                 offset.z = -scale.z * shape.middle.z;
                 let dir = if shape.name == "cylinder" {
                     level

@@ -18,6 +18,28 @@ pub(crate) enum Stroke {
     Dotted,
 }
 
+impl Stroke {
+    const fn gap(self) -> u32 {
+        match self {
+            Self::Full => 1,
+            Self::Dashed => 8,
+            Self::Dotted => 3,
+        }
+    }
+}
+
+/// A short piece of a curve with words beside it.
+pub(crate) fn sample(
+    picture: &mut RgbImage,
+    [x, y]: [u32; 2],
+    (color, stroke): (Rgb<u8>, Stroke),
+    words: &str,
+) {
+    let [left, height] = [x, y + 3].map(f64::from);
+    segment(picture, [left, height], [left + 40.0, height], color, stroke.gap());
+    text(picture, [x + 52, y], words, INK);
+}
+
 /// A chart on a picture.
 pub(crate) struct Chart<'a> {
     picture: &'a mut RgbImage,
@@ -75,12 +97,7 @@ impl<'a> Chart<'a> {
         };
         let pixels: Vec<[f64; 2]> = points.iter().copied().map(place).collect();
         for pair in pixels.windows(2) {
-            let gap = match stroke {
-                Stroke::Full => 1,
-                Stroke::Dashed => 3,
-                Stroke::Dotted => 6,
-            };
-            segment(self.picture, pair[0], pair[1], color, gap);
+            segment(self.picture, pair[0], pair[1], color, stroke.gap());
         }
     }
 
@@ -124,7 +141,7 @@ fn segment(picture: &mut RgbImage, a: [f64; 2], b: [f64; 2], color: Rgb<u8>, gap
 }
 
 /// Letters eight pixels high.
-pub(crate) fn text(picture: &mut RgbImage, at: [u32; 2], text: &str, color: Rgb<u8>) {
+fn text(picture: &mut RgbImage, at: [u32; 2], text: &str, color: Rgb<u8>) {
     for (i, letter) in (0..).zip(text.chars()) {
         let rows = BASIC_LEGACY.get(letter as usize).unwrap_or(&BASIC_LEGACY[0]);
         for (dy, row) in (0..).zip(rows) {

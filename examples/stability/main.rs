@@ -18,7 +18,7 @@ use image::{Rgb, RgbImage};
 use solidray::{Ray, Scene};
 
 use cases::{Axis, Case, Shape, shapes};
-use chart::{Chart, SIZE, Stroke, text};
+use chart::{Chart, SIZE, Stroke, sample};
 use real::Real;
 use reference::ends;
 
@@ -178,22 +178,16 @@ const COLORS: [Rgb<u8>; 6] = [
 
 /// In the last sixth of the picture.
 fn legend(picture: &mut RgbImage, shapes: &[Shape]) {
-    let left = 2 * SIZE[0] + 70;
-    let mut top = SIZE[1] + 40;
-    let mut line = |color: Rgb<u8>, words: &str| {
-        for dx in 0..40 {
-            for dy in 0..3 {
-                picture.put_pixel(left + dx, top + 3 + dy, color);
-            }
-        }
-        text(picture, [left + 52, top], words, Rgb([40, 40, 48]));
-        top += 24;
-    };
-    for (shape, color) in shapes.iter().zip(COLORS) {
-        line(color, shape.name);
+    let shapes =
+        shapes.iter().zip(COLORS).map(|(s, color)| (color, Stroke::Full, s.name));
+    let others = [
+        (NAIVE, Stroke::Full, "ball by the textbook formula"),
+        (FLOOR, Stroke::Full, "full: median of 200 rays against 200 bits"),
+        (FLOOR, Stroke::Dotted, "dotted: the bound stated with each crossing"),
+        (FLOOR, Stroke::Dashed, "dashed: what double precision allows"),
+    ];
+    for (i, (color, stroke, words)) in (0..).zip(shapes.chain(others)) {
+        let place = [2 * SIZE[0] + 70, SIZE[1] + 40 + 24 * i];
+        sample(picture, place, (color, stroke), words);
     }
-    line(NAIVE, "ball by the textbook formula");
-    line(FLOOR, "dashed: what double precision allows");
-    line(FLOOR, "dotted: the bound stated with each crossing");
-    line(FLOOR, "full: median of 200 rays against 200 bits");
 }

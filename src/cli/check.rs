@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
 use serde::Serialize;
+use solidray::measure::{self, Sampling};
 use solidray::read::{Model, ReadError, ReadErrorKind};
 use solidray::{Leaf, NearMisses, Scene, Solid, Weld};
 
 use super::input::{CompileFault, Reading};
-use super::output::{self, BoundsJson, bounds_json, point};
+use super::output::{self, BoundsJson, bounds_json, point, uncertain_in_words};
 use super::report::located;
 use super::{Answer, Global};
 
@@ -49,6 +51,10 @@ struct Report {
     faceted: usize,
     turned: usize,
     bounds: Option<BoundsJson>,
+    /// What a few thousand rays found, and how much of it is thinner than rounding.
+    rays: u64,
+    spans: u64,
+    uncertain: u64,
     welds: Vec<PairJson>,
     near_misses: Vec<PairJson>,
     suggested_weld: Option<f64>,
@@ -163,6 +169,14 @@ fn is_about_the_model(error: &anyhow::Error) -> bool {
     }
 }
 
+/// One round of the smallest lattices.
+const A_FEW_RAYS: Sampling = Sampling {
+    rel_tol: 0.0,
+    max_rays: 0,
+    time_limit: Some(Duration::from_secs(2)),
+    seed: 0,
+};
+
 impl Report {
     fn new(file: &str, model: &Model, scene: &Scene) -> Self {
         let census = Solid::census(&model.solid);
@@ -172,6 +186,7 @@ impl Report {
             *kinds.entry(leaf.kind).or_insert(0) += 1;
             faces += u64::from(leaf.faces);
         }
+        let sample = measure::volume(scene, &A_FEW_RAYS);
         Self {
             ok: true,
             leaves: census.leaves,
@@ -187,6 +202,9 @@ impl Report {
             faceted: model.counts.faceted,
             turned: model.counts.turned,
             bounds: bounds_json(&scene.bounds()),
+            rays: sample.rays,
+            spans: sample.spans,
+            uncertain: sample.uncertain,
             welds: scene.welds().iter().map(|weld| pair(weld, scene)).collect(),
             near_misses: Vec::new(),
             suggested_weld: None,
@@ -229,6 +247,8 @@ impl Report {
             writeln!(out, "bounds     {} to {}", point(bounds.min), point(bounds.max))?;
             writeln!(out, "size       {}", point(bounds.size()))?;
         }
+        let uncertain = uncertain_in_words(self.spans, self.uncertain);
+        writeln!(out, "spans      {uncertain} ({} rays)", self.rays)?;
         if let Some(farthest) = self.welds.first() {
             let (n, distance) = (self.welds.len(), farthest.distance);
             writeln!(out, "welds      {n}, of surfaces at most {distance:.2e} apart")?;

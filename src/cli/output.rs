@@ -67,8 +67,7 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
 }
 
 /// How many spans there were and how many of them rounding decided.
-pub(super) fn uncertain_in_words(estimate: &Estimate) -> String {
-    let Estimate { spans, uncertain, .. } = estimate;
+pub(super) fn uncertain_in_words(spans: u64, uncertain: u64) -> String {
     match uncertain {
         0 => format!("{spans}, none of them shorter than rounding"),
         n => format!(

@@ -68,7 +68,8 @@ impl Volume {
         if global.verbose {
             writeln!(out, "method    {}", volume.method.name())?;
             writeln!(out, "rays      {}", volume.rays)?;
-            writeln!(out, "spans     {}", uncertain_in_words(&volume))?;
+            let measure::Estimate { spans, uncertain, .. } = volume;
+            writeln!(out, "spans     {}", uncertain_in_words(spans, uncertain))?;
             writeln!(
                 out,
                 "seconds   {seconds:.3} (reading {:.3}, compiling {:.3})",
