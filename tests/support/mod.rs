@@ -9,9 +9,11 @@ pub(crate) mod meshes;
 pub(crate) mod model;
 pub(crate) mod nearness;
 pub(crate) mod strategies;
+mod valid;
 
 use glam::DVec3;
-use solidray::{Ray, Scene, Sense, Solid, Span};
+use solidray::{Ray, Scene, Solid, Span};
+pub(crate) use valid::assert_spans_valid;
 
 /// A compiled scene.
 pub(crate) fn scene(solid: &Solid) -> Scene {
@@ -43,26 +45,6 @@ pub(crate) fn total(ends: &[[f64; 2]]) -> f64 {
 /// Whether a place on a ray is inside a span.
 pub(crate) fn covers(ends: &[[f64; 2]], t: f64) -> bool {
     ends.iter().any(|[enter, exit]| *enter <= t && t < *exit)
-}
-
-/// What every list of spans must be: finite, in order, disjoint, none empty, owned by
-/// leaves and faces that exist, with unit normals against the ray where it enters.
-pub(crate) fn assert_spans_valid(scene: &Scene, ray: &Ray, spans: &[Span]) {
-    let mut last = f64::NEG_INFINITY;
-    for span in spans {
-        for (crossing, sense) in [(span.enter, Sense::Enter), (span.exit, Sense::Exit)] {
-            assert!(crossing.t.is_finite(), "{ray:?}: {span:?}");
-            assert!(crossing.t > last, "out of order: {ray:?}: {spans:?}");
-            last = crossing.t;
-            assert_eq!(crossing.sense, sense, "{ray:?}: {span:?}");
-            let leaf = scene.leaf(crossing.leaf);
-            assert!(crossing.face < leaf.faces, "{ray:?}: {span:?}");
-            let normal = scene.normal_at(ray, &crossing);
-            assert!((normal.length() - 1.0).abs() < 1e-12, "{ray:?}: {span:?}: {normal}");
-            let along = normal.dot(ray.dir);
-            assert!(if sense == Sense::Enter { along <= 0.0 } else { along >= 0.0 });
-        }
-    }
 }
 
 /// A ray along the x-axis at this y and z.
