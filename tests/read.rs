@@ -206,6 +206,25 @@ fn depth_costs_no_stack() {
     assert!(refused("group(){".repeat(depth), Format::Csg).contains("end of the file"));
 }
 
+/// Names in a text can be as long as the text, and of any characters.
+#[test]
+fn messages_show_only_the_start_of_long_names() {
+    let long = "n".repeat(5_000);
+    for text in [
+        format!("{long}();"),
+        format!("import(\"a.{long}\");"),
+        format!("cube({long} = 1);"),
+        "import(\"a.\u{1b}[2J\");".to_owned(),
+    ] {
+        let said = match bytes(&text, Format::Csg) {
+            Ok(model) => model.warnings[0].to_string(),
+            Err(error) => error.to_string(),
+        };
+        assert!(said.len() < 200, "{} bytes", said.len());
+        assert!(!said.contains(char::is_control), "{said:?}");
+    }
+}
+
 const TETRAHEDRON: &str = "v 0 0 0\nv 6 0 0\nv 0 6 0\nv 0 0 6\n";
 
 #[test]

@@ -1,6 +1,7 @@
 //! The arguments of a statement, by name or position.
 
 use super::super::error::{Located, ReadErrorKind};
+use super::super::words::quoted;
 use super::evaluate::Reading;
 use super::value::{Document, Statement, Value};
 use crate::solid::Place;
@@ -142,7 +143,8 @@ impl Call<'_> {
                     format!("`{node}` has `{name}` more than once; the last one counts")
                 }
                 (None, Some(name)) => {
-                    format!("`{node}` has no argument `{name}`; it is ignored")
+                    let name = quoted(name.as_bytes());
+                    format!("`{node}` has no argument {name}; it is ignored")
                 }
                 (None, None) => {
                     let count = self.parameters.len();

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::super::error::{Located, ReadErrorKind};
 use super::super::load::Budget;
+use super::super::words::quoted;
 use super::super::{Model, ReadOptions, Warning};
 use super::arguments::Call;
 use super::combine;
@@ -131,7 +132,7 @@ fn shapes(
             continue;
         }
         let Some(node) = node(statement.name) else {
-            let kind = ReadErrorKind::Unsupported(format!("`{}`", statement.name));
+            let kind = ReadErrorKind::Unsupported(quoted(statement.name.as_bytes()));
             return Err(Located::at(statement.place, kind));
         };
         open.push(Frame { node, statement: next, children: Vec::new() });

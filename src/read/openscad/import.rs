@@ -7,6 +7,7 @@ use super::super::error::{Located, ReadError, ReadErrorKind};
 use super::super::faces::{Faces, TURNED};
 use super::super::load::Budget;
 use super::super::options::Format;
+use super::super::words::quoted;
 use super::arguments::Call;
 use super::evaluate::Reading;
 use super::node::Shape;
@@ -25,7 +26,8 @@ pub(super) fn import(
     let format = Format::of(&path);
     let Some(format @ (Format::Obj | Format::Stl | Format::Off)) = format else {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
-        return Err(call.unsupported(format!("import of `.{ending}` files")));
+        let ending = quoted(format!(".{ending}").as_bytes());
+        return Err(call.unsupported(format!("import of {ending} files")));
     };
     let mesh = match reading.imports.get(&path) {
         Some(mesh) => mesh.clone(),
