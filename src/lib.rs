@@ -82,6 +82,7 @@ pub mod render;
 mod sampling;
 mod scene;
 pub mod shape;
+mod shown;
 mod solid;
 
 pub use aabb::Aabb;

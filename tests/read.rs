@@ -206,6 +206,21 @@ fn depth_costs_no_stack() {
     assert!(refused("group(){".repeat(depth), Format::Csg).contains("end of the file"));
 }
 
+/// The largest numbers have 309 digits.
+#[test]
+fn messages_show_large_numbers_with_a_power_of_ten() {
+    assert_eq!(
+        refused("v 1e308 0 0\nv 0 -1e308 0\nv 0 0 1e-308\nf 1 2 3", Format::Obj),
+        "part.x: the mesh is not closed and oriented: 3 edges without the neighbour that \
+         runs the other way, first 0–1 from (1e308, 0, 0) to (0, -1e308, 0); 2–0 from \
+         (0, 0, 1e-308) to (1e308, 0, 0); 1–2 from (0, -1e308, 0) to (0, 0, 1e-308)"
+    );
+    assert_eq!(
+        refused("polygon(1e308);", Format::Csg),
+        "part.x:1:9: `points` of `polygon` must be a vector, not 1e308"
+    );
+}
+
 /// Names in a text can be as long as the text, and of any characters.
 #[test]
 fn messages_show_only_the_start_of_long_names() {

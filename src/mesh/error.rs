@@ -3,6 +3,8 @@
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::shown::Shown;
+
 /// Why some points and faces are not the boundary of a solid.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -29,7 +31,7 @@ pub enum MeshError {
         corners: usize,
     },
     /// A point is infinite or not a number.
-    #[error("point {index} is not finite: ({}, {}, {})", .point.x, .point.y, .point.z)]
+    #[error("point {index} is not finite: {}", shown(*.point))]
     NotFinite {
         /// Which point.
         index: usize,
@@ -46,7 +48,7 @@ pub enum MeshError {
         first: Vec<OpenEdge>,
     },
     /// The faces are seen clockwise from outside.
-    #[error("the mesh is inside out: its signed volume is {volume}; reverse its faces")]
+    #[error("the mesh is inside out: its signed volume is {}; reverse its faces", Shown(*.volume))]
     InsideOut {
         /// The signed volume.
         volume: f64,
@@ -79,6 +81,11 @@ pub struct OpenEdge {
     pub excess: u32,
 }
 
+fn shown(point: DVec3) -> String {
+    let DVec3 { x, y, z } = point;
+    format!("({}, {}, {})", Shown(x), Shown(y), Shown(z))
+}
+
 fn list_edges(edges: &[OpenEdge]) -> String {
     let texts: Vec<String> = edges
         .iter()
@@ -87,8 +94,11 @@ fn list_edges(edges: &[OpenEdge]) -> String {
             let times =
                 if e.excess > 1 { format!(" ({}×)", e.excess) } else { String::new() };
             format!(
-                "{}–{} from ({}, {}, {}) to ({}, {}, {}){times}",
-                e.points[0], e.points[1], a.x, a.y, a.z, b.x, b.y, b.z
+                "{}–{} from {} to {}{times}",
+                e.points[0],
+                e.points[1],
+                shown(a),
+                shown(b)
             )
         })
         .collect();

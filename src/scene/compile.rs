@@ -18,6 +18,7 @@ use crate::color::Color;
 use crate::mesh::Mesh;
 use crate::op::Op;
 use crate::shape::{BadParameter, Chain, Placed, Plane, Primitive, Shape, Slack};
+use crate::shown::Shown;
 use crate::solid::{Kind, Place, Solid, Tag};
 
 /// Why a solid cannot be compiled.
@@ -25,7 +26,7 @@ use crate::solid::{Kind, Place, Solid, Tag};
 #[non_exhaustive]
 pub enum CompileError {
     /// A size is out of its range.
-    #[error("{leaf}: the {parameter} is {value}, which is out of its range")]
+    #[error("{leaf}: the {parameter} is {}, which is out of its range", Shown(*.value))]
     BadParameter {
         /// Which leaf.
         leaf: LeafName,
@@ -36,7 +37,8 @@ pub enum CompileError {
     },
     /// The map of a leaf cannot be inverted.
     #[error(
-        "{leaf}: its map is singular or not finite, its determinant is {determinant}"
+        "{leaf}: its map is singular or not finite, its determinant is {}",
+        Shown(*.determinant)
     )]
     SingularMap {
         /// Which leaf.

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::super::words::is_continuation;
+use crate::shown::Shown;
 use crate::solid::Place;
 
 /// A parsed file.
@@ -133,7 +134,7 @@ impl Document<'_> {
         match self.values[value as usize] {
             Value::Undef => "undef".to_owned(),
             Value::Bool(b) => b.to_string(),
-            Value::Number(x) => x.to_string(),
+            Value::Number(x) => Shown(x).to_string(),
             Value::Text { start, end } => {
                 let text = &self.text[start as usize..end as usize];
                 format!("the string {}", super::super::words::quoted(text))
