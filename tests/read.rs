@@ -7,7 +7,12 @@ use proptest::prelude::*;
 use solidray::read::{
     self, Curves, Format, Model, ReadError, ReadErrorKind, ReadOptions,
 };
-use solidray::{Mesh, View};
+use solidray::{Mesh, Scene, View};
+
+#[path = "support/answers.rs"]
+mod answers;
+#[path = "support/valid.rs"]
+mod valid;
 
 fn bytes(text: impl AsRef<[u8]>, format: Format) -> Result<Model, ReadError> {
     read::bytes(text.as_ref(), Path::new("part.x"), format, &ReadOptions::default())
@@ -237,6 +242,24 @@ fn messages_show_only_the_start_of_long_names() {
         };
         assert!(said.len() < 200, "{} bytes", said.len());
         assert!(!said.contains(char::is_control), "{said:?}");
+    }
+}
+
+/// That a text describes a solid, which answers as it must.
+#[track_caller]
+fn assert_answers(text: &str, format: Format) {
+    let model = bytes(text, format).expect("the text is right");
+    let scene = Scene::compile(&model.solid).expect("the solid is right");
+    answers::assert_answers_valid(&scene);
+}
+
+#[test]
+fn corners_far_and_near_make_a_mesh_that_is_closed_for_every_line() {
+    for text in [
+        "v 0 0 0\nv 1e200 0 0\nv 0 1 0\nv 0 0 1\nf 3 2 1\nf 1 2 4\nf 2 3 4\nf 1 4 3",
+        "v 1e300 0 1\nv 0 0 2\nv 0 1 1\nf 1 2 3 2",
+    ] {
+        assert_answers(text, Format::Obj);
     }
 }
 

@@ -1,27 +1,18 @@
 //! What the fuzz targets share: what must hold for whatever a reader makes of any bytes.
 
+#[path = "../../tests/support/answers.rs"]
+mod answers;
 #[path = "../../tests/support/valid.rs"]
 mod valid;
 pub mod words;
 
 use std::path::Path;
 
-use glam::{DVec3, dvec3};
 use solidray::read::{self, Format, Model, ReadError, ReadErrorKind, ReadOptions};
-use solidray::{Aabb, Place, Ray, Scene, Solid};
+use solidray::{Place, Scene, Solid};
 
 /// The largest solid that is compiled: larger ones are legal, but take their time.
 const MOST_LEAVES: u64 = 2_000;
-
-/// Directions of the rays: along axes, within planes of two axes, and askew.
-const DIRECTIONS: [DVec3; 6] = [
-    DVec3::X,
-    DVec3::Y,
-    DVec3::NEG_Z,
-    dvec3(1.0, 1.0, 0.0),
-    dvec3(0.0, -2.0, 1.0),
-    dvec3(0.3, 0.7, -0.6),
-];
 
 /// Reads bytes, and asks what they describe, if they do.
 ///
@@ -79,35 +70,7 @@ fn check_solid(solid: &Solid) {
         return;
     }
     match Scene::compile(solid) {
-        Ok(scene) => check_scene(&scene),
+        Ok(scene) => answers::assert_answers_valid(&scene),
         Err(error) => assert!(!error.to_string().is_empty(), "nothing is said"),
     }
-}
-
-fn check_scene(scene: &Scene) {
-    let bounds = scene.bounds();
-    assert!(bounds.is_empty() || bounds.is_bounded(), "{bounds:?}");
-    let places = if bounds.is_empty() {
-        vec![DVec3::ZERO]
-    } else {
-        let Aabb { min, max } = bounds;
-        let within = min + dvec3(0.37, 0.61, 0.23) * bounds.size();
-        vec![DVec3::ZERO, bounds.center(), within, min, max]
-    };
-    let mut tracer = scene.tracer();
-    for origin in places.into_iter().filter(|p| p.is_finite()) {
-        let inside = tracer.contains(origin);
-        assert!(!inside || holds(&bounds, origin), "{origin} is inside");
-        for dir in DIRECTIONS {
-            let ray = Ray::new(origin, dir);
-            let spans = tracer.spans(&ray).to_vec();
-            valid::assert_spans_valid(scene, &ray, &spans);
-            assert!(spans.is_empty() || !bounds.is_empty(), "{spans:?}");
-        }
-    }
-}
-
-/// Whether a point is within some bounds, ends included.
-fn holds(bounds: &Aabb, p: DVec3) -> bool {
-    p.cmpge(bounds.min).all() && p.cmple(bounds.max).all()
 }

@@ -104,9 +104,9 @@ impl Surface for Polyhedron {
         let dir = self.to_local.direction(line.dir);
         let IndexedMesh { mesh, faces, scale } = &*self.mesh;
         let moves = DVec3::AXES.map(|axis| self.to_local.direction(axis));
-        let shear = Shear::new(*scale * origin, *scale * dir, moves);
+        let shear = Shear::new(*scale, origin, dir, moves);
         faces.crossed(&Slabs::new(origin, dir, &faces.bounds()), |face| {
-            let corners = mesh.corners(face as usize).map(|p| shear.map(*scale * p));
+            let corners = mesh.corners(face as usize).map(|p| shear.map(p));
             if let Some((t, sense)) = crossing(corners, &shear) {
                 sink.crossing(t, face, sense);
             }
@@ -209,24 +209,22 @@ impl Polyhedron {
 
     /// At most how wrong the mean of the places of three corners on a line is by its weights.
     fn mean_rounding(&self, corners: [DVec3; 3], origin: DVec3, dir: DVec3) -> f64 {
-        let scale = self.mesh.scale;
-        let shear = Shear::new(scale * origin, scale * dir, DVec3::AXES);
-        let [a, b, c] = corners.map(|p| shear.map(scale * p));
+        let shear = Shear::new(self.mesh.scale, origin, dir, DVec3::AXES);
+        let [a, b, c] = corners.map(|p| shear.map(p));
         let (low, high) =
             (a.along.min(b.along).min(c.along), a.along.max(b.along).max(c.along));
         let (ab, ac) = (b.beside - a.beside, c.beside - a.beside);
         let area = ab.perp_dot(ac).abs();
         let edges = ab.length_squared().max(ac.length_squared());
-        if area > 0.0 {
-            (high - low) * (24.0 * U * edges / area).min(1.0)
-        } else {
-            high - low
-        }
+        let range = (high - low) * shear.step;
+        if area > 0.0 { range * (24.0 * U * edges / area).min(1.0) } else { range }
     }
 }
 
 /// The map that takes a line to the third axis.
 struct Shear {
+    /// A power of two that brings all coordinates seen from the origin to 1 or less.
+    scale: f64,
     origin: DVec3,
     /// Which axes become the first, second and third: the third is the one along which the
     /// line is steepest, and the first two follow it in turn, whichever way the line runs,
@@ -235,6 +233,8 @@ struct Shear {
     shift: DVec2,
     /// How fast the line runs along the third axis; negative if it runs against it.
     speed: f64,
+    /// What a place along the line must be multiplied by to count in its directions.
+    step: f64,
     /// Where the moved line is seen: by each world axis, the first before the others, and
     /// by both axes of the plane should rounding have made those parallel.
     moves: [DVec2; 5],
@@ -248,23 +248,37 @@ struct Corner {
 }
 
 impl Shear {
-    fn new(origin: DVec3, dir: DVec3, moves: [DVec3; 3]) -> Self {
+    /// The scale is that of the mesh.
+    fn new(scale: f64, origin: DVec3, dir: DVec3, moves: [DVec3; 3]) -> Self {
+        let level = |v: DVec3| v * inverse_power_of_two(v.abs().max_element());
+        let scale = scale.min(inverse_power_of_two(origin.abs().max_element()));
+        let step = (inverse_power_of_two(dir.abs().max_element()) / scale).min(f64::MAX);
+        let dir = level(dir);
         let z = dir.abs().max_position();
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         let shift = DVec2::new(dir[x], dir[y]) / dir[z];
-        let [first, second, third] = moves.map(|m| DVec2::new(m[x], m[y]) - shift * m[z]);
+        let [first, second, third] =
+            moves.map(level).map(|m| flushed(DVec2::new(m[x], m[y]) - shift * m[z]));
         let moves = [first, second, third, DVec2::X, DVec2::Y];
-        Self { origin, axes: [x, y, z], shift, speed: dir[z], moves }
+        let (axes, origin) = ([x, y, z], scale * origin);
+        Self { scale, origin, axes, shift, speed: dir[z], step, moves }
     }
 
     fn map(&self, point: DVec3) -> Corner {
-        let p = point - self.origin;
+        let p = self.scale * point - self.origin;
         let [x, y, z] = self.axes;
         Corner {
-            beside: DVec2::new(p[x], p[y]) - self.shift * p[z],
+            beside: flushed(DVec2::new(p[x], p[y]) - self.shift * p[z]),
             along: p[z] / self.speed,
         }
     }
+}
+
+/// Zero for coordinates whose products have no room for all their digits. It deforms the
+/// mesh like any other rounding.
+fn flushed(p: DVec2) -> DVec2 {
+    const LEAST: f64 = 1e-144;
+    p.map(|x| if x.abs() < LEAST { 0.0 } else { x })
 }
 
 /// Where the line passes through a triangle, and whether it goes in or out.
@@ -282,7 +296,7 @@ fn crossing([a, b, c]: [Corner; 3], shear: &Shear) -> Option<(f64, Sense)> {
     if shear.is_left_turn(ab, a, b)? != is_left {
         return None;
     }
-    let t = along([a, b, c], [bc, ca, ab]);
+    let t = along([a, b, c], [bc, ca, ab]) * shear.step;
     Some((t, if is_left == (shear.speed > 0.0) { Sense::Exit } else { Sense::Enter }))
 }
 
