@@ -263,6 +263,13 @@ fn corners_far_and_near_make_a_mesh_that_is_closed_for_every_line() {
     }
 }
 
+/// At 1e75 a cube is nothing but rounding: any plane might be one of its faces.
+#[test]
+fn a_leaf_lost_in_rounding_leaves_others_as_they_are() {
+    let near = "cube(1); cylinder(); multmatrix([[1,1,1,1e75]]) cube(1);";
+    assert_answers(&format!("multmatrix([[],[1]]) {{ {near} }}"), Format::Csg);
+}
+
 const TETRAHEDRON: &str = "v 0 0 0\nv 6 0 0\nv 0 6 0\nv 0 0 6\n";
 
 #[test]

@@ -12,6 +12,11 @@ use crate::shape::{Plane, Polyhedron, Profile, Wall};
 /// plane's equation by some 16 u more; this leaves room for a dozen nested maps.
 const ROUNDING: f64 = 64.0 * 0.5 * f64::EPSILON;
 
+/// A leaf that rounding may have moved by more than this part of its size shares only what
+/// is the same to the bit: any plane near it would pass for any of its own, whichever way it
+/// faces. Where its map flattens it, its planes are that much closer to being parallel.
+const LOST: f64 = 64.0;
+
 /// What a leaf says of its own size and precision.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
@@ -26,7 +31,13 @@ impl Extent {
         let near = if bounds.is_bounded() { *bounds } else { *scene };
         let far = near.min.abs().max(near.max.abs()).max_element();
         let radius = 0.5 * near.size().length();
-        Self { center: near.center(), radius, rounding: ROUNDING * condition * far }
+        let rounding = ROUNDING * condition * far;
+        let is_lost = rounding * condition * LOST > radius;
+        Self {
+            center: near.center(),
+            radius,
+            rounding: if is_lost { 0.0 } else { rounding },
+        }
     }
 }
 
