@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use solidray::read::{
     self, Curves, Format, Model, ReadError, ReadErrorKind, ReadOptions,
 };
-use solidray::{Mesh, Scene, View};
+use solidray::{CompileError, Mesh, Scene, View};
 
 #[path = "support/answers.rs"]
 mod answers;
@@ -268,6 +268,39 @@ fn corners_far_and_near_make_a_mesh_that_is_closed_for_every_line() {
 fn a_leaf_lost_in_rounding_leaves_others_as_they_are() {
     let near = "cube(1); cylinder(); multmatrix([[1,1,1,1e75]]) cube(1);";
     assert_answers(&format!("multmatrix([[],[1]]) {{ {near} }}"), Format::Csg);
+}
+
+#[test]
+fn what_reaches_beyond_the_largest_numbers_is_refused() {
+    for (text, leaf) in [
+        ("multmatrix([[1,0,0,1e308]]) cube(1);", "1:29: leaf 0 (cuboid)"),
+        ("multmatrix([[1e200]]) sphere(1e130);", "1:23: leaf 0 (ball)"),
+        ("multmatrix([[1e200,-1e200]]) cube([1e200,1e200,1]);", "1:30: leaf 0 (cuboid)"),
+        (
+            "linear_extrude(1) polygon([[0,0],[1e305,0],[0,1e305]]);",
+            "1:19: leaf 0 (mesh)",
+        ),
+    ] {
+        let error = Scene::compile(&csg(text).solid).expect_err(text);
+        assert!(matches!(error, CompileError::BadParameter { .. }), "{error}");
+        let expected = format!("{leaf}: the largest coordinate is ");
+        assert!(error.to_string().starts_with(&expected), "{error}");
+    }
+}
+
+/// Seen from the scene's middle such a leaf has no size, and its distance no square.
+#[test]
+fn a_speck_in_a_vast_scene_has_finite_ends() {
+    for speck in ["cylinder(r2 = 0)", "cylinder(2, $fn = 5)", "sphere(1)", "cube(1)"] {
+        let vast = format!("multmatrix([[1e77]]) cube([1e154,1,1]); {speck};");
+        assert_answers(&vast, Format::Csg);
+        let map = "[[1e-140],[0,1e-140],[0,0,1e-140]]";
+        let vast = format!("cube([1e300,1,1]); multmatrix({map}) {speck};");
+        assert_answers(&vast, Format::Csg);
+    }
+    let turned = "multmatrix([[3],[0,0,1],[0,1]]) { multmatrix([[1e8]]) cylinder(r2 = 0); \
+                  multmatrix([[1e77]]) cube([1e154,1,1]); }";
+    assert_answers(turned, Format::Csg);
 }
 
 const TETRAHEDRON: &str = "v 0 0 0\nv 6 0 0\nv 0 6 0\nv 0 0 6\n";

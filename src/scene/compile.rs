@@ -1,5 +1,6 @@
 //! From the tree that was said to the flat scene that is asked.
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -102,6 +103,9 @@ impl CompileError {
     /// The tree has more nodes than can be numbered, whatever is allowed.
     const BEYOND_NUMBERS: Self = Self::TooLarge { most_nodes: u32::MAX as u64 };
 }
+
+/// The largest coordinate of a leaf: sums of a few such are numbers still.
+const FARTHEST: f64 = 1e301;
 
 /// A leaf as errors name it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -340,12 +344,20 @@ impl Compiler {
 
     fn add_leaf(
         &mut self,
-        Placed { shape, bounds, condition, slack }: Placed,
+        Placed { shape, bounds, condition, slack, reach }: Placed,
         task: &Task<'_>,
         context: &Context,
     ) -> Result<(), CompileError> {
         if self.shapes.len() >= u32::MAX as usize {
             return Err(CompileError::BEYOND_NUMBERS);
+        }
+        // Whatever is not at most the limit, which includes what is no number.
+        if reach.partial_cmp(&FARTHEST).is_none_or(Ordering::is_gt) {
+            return Err(CompileError::BadParameter {
+                leaf: self.leaf_name(shape.kind(), context),
+                parameter: "largest coordinate",
+                value: reach,
+            });
         }
         self.program.expect_child(task.parent);
         self.literals.push(Literal { parent: task.parent, complement: task.complement });

@@ -121,12 +121,12 @@ fn coarse(x: f64, width: f64) -> f64 {
 }
 
 /// The power of two that brings a positive number into 1..2, or as near as one factor goes
-/// for denormal numbers and those above 2¹⁰²³.
+/// for denormal numbers and those above 2¹⁰²³, infinity among them.
 pub(super) fn inverse_power_of_two(x: f64) -> f64 {
     /// The exponent field of 1.0.
     const BIAS: u64 = 1023;
     // The field of 2⁻ᵉ is 2 BIAS minus that of 2ᵉ; both ends of its range are taken by
     // other kinds of numbers.
-    let field = (2 * BIAS - (x.to_bits() >> 52)).clamp(1, 2 * BIAS - 1);
+    let field = (2 * BIAS).saturating_sub(x.to_bits() >> 52).clamp(1, 2 * BIAS - 1);
     f64::from_bits(field << 52)
 }

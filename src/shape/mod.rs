@@ -97,6 +97,8 @@ pub(crate) struct Placed {
     /// The condition number of its map.
     pub(crate) condition: f64,
     pub(crate) slack: Slack,
+    /// No coordinate of the leaf, or of the plane of a half-space, is larger than this.
+    pub(crate) reach: f64,
 }
 
 /// At most how far the surfaces of a leaf, as they are kept, lie beside those that were said.
@@ -134,25 +136,28 @@ impl Shape {
     pub(crate) fn place(primitive: &Primitive, chain: &Chain) -> Result<Placed, f64> {
         let frame = Frame::new(chain.map)?;
         let slack = |radius| Slack::of(&frame, chain, radius);
-        let (shape, bounds, slack) = match *primitive {
+        let (shape, bounds, slack, reach) = match *primitive {
             Primitive::Cuboid { min, max } => (
                 Self::Cuboid(Cuboid::new(&frame, min, max)),
                 Cuboid::bounds(&frame, min, max),
                 slack(min.abs().max(max.abs()).length()),
+                frame.reach(min.abs().max(max.abs())),
             ),
             Primitive::Quadric { profile, bottom, top } => (
                 Self::Quadric(Quadric::new(&frame, profile, bottom, top)),
                 Quadric::bounds(&frame, profile, bottom, top),
                 slack(Quadric::radius(profile, bottom, top)),
+                frame.reach(DVec3::splat(Quadric::radius(profile, bottom, top))),
             ),
             Primitive::HalfSpace { normal, offset } => {
                 let leaf = HalfSpace::new(&frame, normal, offset);
                 let bounds = leaf.bounds();
                 let slack = Slack::Unbounded(Box::new((frame, *chain)));
-                (Self::HalfSpace(leaf), bounds, slack)
+                let reach = leaf.planes[0].offset.abs();
+                (Self::HalfSpace(leaf), bounds, slack, reach)
             }
         };
-        Ok(Placed { shape, bounds, condition: frame.condition(), slack })
+        Ok(Placed { shape, bounds, condition: frame.condition(), slack, reach })
     }
 
     /// A mesh under a map; or the determinant of a map that cannot be inverted.
@@ -163,8 +168,9 @@ impl Shape {
         let frame = Frame::new(chain.map)?;
         let bounds = Polyhedron::bounds(&frame, &mesh);
         let slack = Slack::of(&frame, chain, mesh.radius());
+        let reach = frame.reach(mesh.largest());
         let shape = Self::Polyhedron(Polyhedron::new(&frame, mesh));
-        Ok(Placed { shape, bounds, condition: frame.condition(), slack })
+        Ok(Placed { shape, bounds, condition: frame.condition(), slack, reach })
     }
 
     /// Whether the leaf is all of its bounds: a box along the axes.

@@ -58,6 +58,13 @@ impl Frame {
         norm(&self.inverse) * (away.length() + 0.5 * world.size().length())
     }
 
+    /// At most the largest coordinate in the world of local points whose coordinates are no
+    /// larger than these.
+    pub(crate) fn reach(&self, local: DVec3) -> f64 {
+        let DAffine3 { matrix3, translation } = self.world_from_local;
+        (matrix3.abs() * local + translation.abs()).max_element()
+    }
+
     /// The local origin in the world.
     pub(crate) fn origin(&self) -> DVec3 {
         self.world_from_local.translation

@@ -49,10 +49,15 @@ impl IndexedMesh {
         Self { mesh, faces, scale: inverse_power_of_two(largest) }
     }
 
+    /// The largest coordinates.
+    pub(crate) fn largest(&self) -> DVec3 {
+        let bounds = self.faces.bounds();
+        bounds.min.abs().max(bounds.max.abs())
+    }
+
     /// No point is farther than this from the local origin.
     pub(crate) fn radius(&self) -> f64 {
-        let bounds = self.faces.bounds();
-        bounds.min.abs().max(bounds.max.abs()).length()
+        self.largest().length()
     }
 }
 
@@ -103,6 +108,10 @@ impl Surface for Polyhedron {
         let origin = self.to_local.origin_of(line);
         let dir = self.to_local.direction(line.dir);
         let IndexedMesh { mesh, faces, scale } = &*self.mesh;
+        // A mesh too small to be told from a point of the scene.
+        if !origin.is_finite() || !dir.is_finite() || dir == DVec3::ZERO {
+            return;
+        }
         let moves = DVec3::AXES.map(|axis| self.to_local.direction(axis));
         let shear = Shear::new(*scale, origin, dir, moves);
         faces.crossed(&Slabs::new(origin, dir, &faces.bounds()), |face| {

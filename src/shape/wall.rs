@@ -69,7 +69,8 @@ impl Wall {
             };
         }
         let discriminant = b * b - a * c;
-        if discriminant <= 0.0 {
+        // Not a number where the scene is too large for the leaf to be told from a point.
+        if discriminant <= 0.0 || !discriminant.is_finite() {
             return [all.filter(|_| a < 0.0), None];
         }
         let root = discriminant.sqrt();
