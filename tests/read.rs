@@ -303,6 +303,14 @@ fn a_speck_in_a_vast_scene_has_finite_ends() {
     assert_answers(turned, Format::Csg);
 }
 
+/// The squares of such a cone's normals are no numbers.
+#[test]
+fn a_cone_as_tall_as_numbers_go_has_unit_normals() {
+    let tall = "multmatrix([[],[],[1,0,1e155]]) cylinder(50, r2 = 0)";
+    let cut = format!("difference() {{ cylinder(55, r1 = 17); {tall}; }}");
+    assert_answers(&format!("multmatrix([[],[1,1,3],[1,1]]) {cut}"), Format::Csg);
+}
+
 const TETRAHEDRON: &str = "v 0 0 0\nv 6 0 0\nv 0 6 0\nv 0 0 6\n";
 
 #[test]

@@ -303,7 +303,12 @@ fn meshes_may_be_as_large_or_small_as_numbers_go() {
             assert!(scene.contains(size * inside), "{size}: {inside}");
             assert!(!scene.contains(size * outside), "{size}: {outside}");
             let ray = Ray::new(size * inside, dice.direction());
-            assert_eq!(ends_in(&scene, &ray).len(), 1, "{size}: {inside}");
+            let list = spans(&scene, &ray);
+            assert_eq!(list.len(), 1, "{size}: {inside}");
+            let Crossing { t, .. } = list[0].exit;
+            let normal = scene.normal_at(&ray, &list[0].exit);
+            let outward = (ray.at(t) / size).normalize();
+            assert!(normal.dot(outward) > 0.9, "{size}: {normal} at {outward}");
         }
     }
 }

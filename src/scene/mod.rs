@@ -22,7 +22,7 @@ use crate::aabb::Aabb;
 use crate::bvh::Bvh;
 use crate::color::Color;
 use crate::ray::{Crossing, Ray, Sense};
-use crate::shape::{Line, Shape, Spot};
+use crate::shape::{Line, Shape, Spot, inverse_power_of_two};
 use crate::solid::{Place, Solid};
 pub use classify::Membership;
 pub use compile::{CompileError, LeafName};
@@ -157,7 +157,8 @@ impl Scene {
     pub fn normal_at(&self, ray: &Ray, crossing: &Crossing) -> DVec3 {
         let Crossing { t, leaf, face, sense } = *crossing;
         let outward = self.shapes[leaf as usize].surface().normal(ray.at(t), face);
-        let unit = outward.normalize_or(ray.dir.normalize_or(DVec3::Z));
+        let level = inverse_power_of_two(outward.abs().max_element());
+        let unit = (level * outward).normalize_or(ray.dir.normalize_or(DVec3::Z));
         let against = unit.dot(ray.dir) <= 0.0;
         if against == (sense == Sense::Enter) { unit } else { -unit }
     }

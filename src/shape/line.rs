@@ -122,7 +122,7 @@ fn coarse(x: f64, width: f64) -> f64 {
 
 /// The power of two that brings a positive number into 1..2, or as near as one factor goes
 /// for denormal numbers and those above 2¹⁰²³, infinity among them.
-pub(super) fn inverse_power_of_two(x: f64) -> f64 {
+pub(crate) fn inverse_power_of_two(x: f64) -> f64 {
     /// The exponent field of 1.0.
     const BIAS: u64 = 1023;
     // The field of 2⁻ᵉ is 2 BIAS minus that of 2ᵉ; both ends of its range are taken by

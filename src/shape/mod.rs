@@ -32,7 +32,7 @@ pub(crate) use chain::Chain;
 use cuboid::Cuboid;
 pub(crate) use doubt::{Local, Spot, U};
 use half_space::HalfSpace;
-pub(crate) use line::Line;
+pub(crate) use line::{Line, inverse_power_of_two};
 use place::Frame;
 pub(crate) use place::inverse;
 pub(crate) use plane::Plane;

@@ -124,7 +124,7 @@ impl Surface for Polyhedron {
 
     fn normal(&self, _point: DVec3, face: u32) -> DVec3 {
         let [a, b, c] = self.mesh.mesh.corners(face as usize);
-        self.to_local.normal_to_world((b - a).cross(c - a))
+        self.to_local.normal_to_world(level(b - a).cross(level(c - a)))
     }
 
     /// The plane of a triangle, its value not divided by the length of its normal.
@@ -259,7 +259,6 @@ struct Corner {
 impl Shear {
     /// The scale is that of the mesh.
     fn new(scale: f64, origin: DVec3, dir: DVec3, moves: [DVec3; 3]) -> Self {
-        let level = |v: DVec3| v * inverse_power_of_two(v.abs().max_element());
         let scale = scale.min(inverse_power_of_two(origin.abs().max_element()));
         let step = (inverse_power_of_two(dir.abs().max_element()) / scale).min(f64::MAX);
         let dir = level(dir);
@@ -281,6 +280,11 @@ impl Shear {
             along: p[z] / self.speed,
         }
     }
+}
+
+/// A vector times the power of two that makes it about 1 long.
+fn level(v: DVec3) -> DVec3 {
+    v * inverse_power_of_two(v.abs().max_element())
 }
 
 /// Zero for coordinates whose products have no room for all their digits. It deforms the
