@@ -271,7 +271,7 @@ fn a_leaf_lost_in_rounding_leaves_others_as_they_are() {
 }
 
 #[test]
-fn what_reaches_beyond_the_largest_numbers_is_refused() {
+fn what_is_as_large_or_small_as_numbers_go_is_refused() {
     for (text, leaf) in [
         ("multmatrix([[1,0,0,1e308]]) cube(1);", "1:29: leaf 0 (cuboid)"),
         ("multmatrix([[1e200]]) sphere(1e130);", "1:23: leaf 0 (ball)"),
@@ -279,6 +279,11 @@ fn what_reaches_beyond_the_largest_numbers_is_refused() {
         (
             "linear_extrude(1) polygon([[0,0],[1e305,0],[0,1e305]]);",
             "1:19: leaf 0 (mesh)",
+        ),
+        ("sphere(3e-307, $fn = 3);", "1:1: leaf 0 (mesh)"),
+        (
+            "cube(1); multmatrix([[1,0,0,1],[0,1],[0,0,1]]) cube(1e308);",
+            "1:48: leaf 1 (cuboid)",
         ),
     ] {
         let error = Scene::compile(&csg(text).solid).expect_err(text);

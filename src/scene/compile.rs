@@ -1,7 +1,7 @@
 //! From the tree that was said to the flat scene that is asked.
 
-use std::cmp::Ordering;
 use std::collections::HashMap;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use thiserror::Error;
@@ -26,7 +26,7 @@ use crate::solid::{Kind, Place, Solid, Tag};
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CompileError {
-    /// A size is out of its range.
+    /// A size is out of its range, or the largest coordinate is.
     #[error("{leaf}: the {parameter} is {}, which is out of its range", Shown(*.value))]
     BadParameter {
         /// Which leaf.
@@ -104,8 +104,9 @@ impl CompileError {
     const BEYOND_NUMBERS: Self = Self::TooLarge { most_nodes: u32::MAX as u64 };
 }
 
-/// The largest coordinate of a leaf: sums of a few such are numbers still.
-const FARTHEST: f64 = 1e301;
+/// The largest coordinate of a leaf, if it is not zero: sums of a few such are numbers still,
+/// and what rounding does to them is in proportion to them.
+const REACH: RangeInclusive<f64> = 1e-301..=1e301;
 
 /// A leaf as errors name it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -351,8 +352,7 @@ impl Compiler {
         if self.shapes.len() >= u32::MAX as usize {
             return Err(CompileError::BEYOND_NUMBERS);
         }
-        // Whatever is not at most the limit, which includes what is no number.
-        if reach.partial_cmp(&FARTHEST).is_none_or(Ordering::is_gt) {
+        if reach != 0.0 && !REACH.contains(&reach) {
             return Err(CompileError::BadParameter {
                 leaf: self.leaf_name(shape.kind(), context),
                 parameter: "largest coordinate",
