@@ -198,8 +198,9 @@ fn nothing_is_an_upper_bound_unless_it_is_known() {
     }
 }
 
-/// The spread of sixteen lattices falls as the theory of their order says: of a chord with
-/// silhouettes that rise steadily, like 1/N (see `measure::lattice`).
+/// The spread of sixteen lattices falls as the theory of their order says: like 1/N where a
+/// chord rises steadily from a silhouette, and faster where it is made of straight pieces
+/// alone, as that of a box along its edges is for rays that lean.
 #[test]
 fn n38_the_error_of_lattices_falls_like_1_over_n() {
     let tilted = Solid::cuboid(dvec3(1.0, 2.0, 0.7)).mapped(tilt());
@@ -214,8 +215,8 @@ fn n38_the_error_of_lattices_falls_like_1_over_n() {
         ("shell", Solid::ball(1.0) - Solid::ball(0.9975)),
     ] {
         let scene = scene(&solid);
-        let spread = |doublings: u32| {
-            let most = 4000 << doublings;
+        let spread = |step: u32| {
+            let most = 4000 * 3_u64.pow(step);
             let found =
                 (0..4).map(|seed| measure::volume(&scene, &sampling(0.0, most, seed)));
             let widths: Vec<[f64; 2]> =
@@ -223,9 +224,9 @@ fn n38_the_error_of_lattices_falls_like_1_over_n() {
             let mean = |k: usize| widths.iter().map(|w| w[k].ln()).sum::<f64>() / 4.0;
             [mean(0), mean(1)]
         };
-        let points: Vec<[f64; 2]> = (0..=6).map(spread).collect();
+        let points: Vec<[f64; 2]> = (0..=4).map(spread).collect();
         let order = slope(&points);
-        assert!((-1.15..=-0.85).contains(&order), "{name}: {order:.3} of {points:?}");
+        assert!((-2.15..=-0.85).contains(&order), "{name}: {order:.3} of {points:?}");
     }
 }
 
@@ -295,7 +296,7 @@ fn n41_more_rays_make_narrower_intervals() {
         widths.sort_by(f64::total_cmp);
         widths[7]
     };
-    let medians: Vec<f64> = (0..5).map(|doublings| median(4000 << doublings)).collect();
+    let medians: Vec<f64> = (0..5).map(|step| median(4000 * 3_u64.pow(step))).collect();
     assert!(medians.is_sorted_by(|a, b| a > b), "{medians:?}");
 }
 
