@@ -111,9 +111,11 @@ pub(crate) enum Slack {
 }
 
 impl Slack {
-    /// Of a leaf with no point farther than this from its own origin.
-    fn of(frame: &Frame, chain: &Chain, radius: f64) -> Self {
-        Self::Bounded(chain.error(radius) + frame.slack(radius))
+    /// Of a leaf with no point farther than this from its own origin, which has planes or not.
+    fn of(frame: &Frame, chain: &Chain, radius: f64, has_planes: bool) -> Self {
+        let slack =
+            if has_planes { frame.slack_of_planes(radius) } else { frame.slack(radius) };
+        Self::Bounded(chain.error(radius) + slack)
     }
 
     /// The same for what is within a box.
@@ -125,7 +127,7 @@ impl Slack {
                 // An oblique normal is rounded on its way into the world.
                 let rounds = 16.0 * frame.condition();
                 let radius = frame.radius_of(reach);
-                chain.error(radius) + rounds * frame.slack(radius)
+                chain.error(radius) + rounds * frame.slack_of_planes(radius)
             }
         }
     }
@@ -135,18 +137,21 @@ impl Shape {
     /// A primitive under a map; or the determinant of a map that cannot be inverted.
     pub(crate) fn place(primitive: &Primitive, chain: &Chain) -> Result<Placed, f64> {
         let frame = Frame::new(chain.map)?;
-        let slack = |radius| Slack::of(&frame, chain, radius);
+        let slack = |radius, has_planes| Slack::of(&frame, chain, radius, has_planes);
         let (shape, bounds, slack, reach) = match *primitive {
             Primitive::Cuboid { min, max } => (
                 Self::Cuboid(Cuboid::new(&frame, min, max)),
                 Cuboid::bounds(&frame, min, max),
-                slack(min.abs().max(max.abs()).length()),
+                slack(min.abs().max(max.abs()).length(), true),
                 frame.reach(min.abs().max(max.abs())),
             ),
             Primitive::Quadric { profile, bottom, top } => (
                 Self::Quadric(Quadric::new(&frame, profile, bottom, top)),
                 Quadric::bounds(&frame, profile, bottom, top),
-                slack(Quadric::radius(profile, bottom, top)),
+                slack(
+                    Quadric::radius(profile, bottom, top),
+                    !Quadric::is_whole(profile, bottom, top),
+                ),
                 frame.reach(DVec3::splat(Quadric::radius(profile, bottom, top))),
             ),
             Primitive::HalfSpace { normal, offset } => {
@@ -167,7 +172,7 @@ impl Shape {
     ) -> Result<Placed, f64> {
         let frame = Frame::new(chain.map)?;
         let bounds = Polyhedron::bounds(&frame, &mesh);
-        let slack = Slack::of(&frame, chain, mesh.radius());
+        let slack = Slack::of(&frame, chain, mesh.radius(), false);
         let reach = frame.reach(mesh.largest());
         let shape = Self::Polyhedron(Polyhedron::new(&frame, mesh));
         Ok(Placed { shape, bounds, condition: frame.condition(), slack, reach })

@@ -48,8 +48,12 @@ impl Frame {
         let residual =
             norm(&(DMat3::IDENTITY - m * x)) + 4.0 * U * norm(&(m.abs() * x.abs()));
         let reach = norm(&m) * radius;
-        let far = self.world_from_local.translation.length() + reach;
-        residual * reach + 32.0 * U * far
+        (residual + 32.0 * U) * reach
+    }
+
+    /// The same for the planes of a leaf, whose offsets are kept in the world.
+    pub(crate) fn slack_of_planes(&self, radius: f64) -> f64 {
+        self.slack(radius) + 32.0 * U * self.world_from_local.translation.length()
     }
 
     /// The radius about the local origin of all that is within a box in the world.

@@ -23,7 +23,7 @@ impl Quadric {
     /// The wall is kept in units of about its largest radius, a power of two, so that no
     /// square of a length is too large or too small to be a number.
     pub(crate) fn new(frame: &Frame, profile: Profile, bottom: f64, top: f64) -> Self {
-        let whole = matches!(profile, Profile::Ball { radius } if bottom <= -radius && top >= radius);
+        let whole = Self::is_whole(profile, bottom, top);
         let planes = (!whole).then(|| {
             [
                 Plane::new(frame, -DVec3::Z, -bottom, DVec3::Z * bottom),
@@ -58,6 +58,11 @@ impl Quadric {
                 frame.bounds_of_discs([(bottom, radius), (top, radius)])
             }
         }
+    }
+
+    /// Whether the profile ends by itself.
+    pub(crate) fn is_whole(profile: Profile, bottom: f64, top: f64) -> bool {
+        matches!(profile, Profile::Ball { radius } if bottom <= -radius && top >= radius)
     }
 
     /// No point is farther than this from the local origin.
