@@ -154,20 +154,6 @@ proptest! {
     }
 
     #[test]
-    fn points_are_inside_where_the_formula_says(
-        model in model(),
-        points in prop::collection::vec(place(), 1..20),
-    ) {
-        let scene = scene(&model.solid());
-        let mut tracer = scene.tracer();
-        let features = model.features().into_iter().map(|f| f.point * 0.999);
-        for p in points.into_iter().chain(features) {
-            let holds = model.holds(p);
-            prop_assert!(holds.is_none_or(|inside| inside == tracer.contains(p)), "{p}");
-        }
-    }
-
-    #[test]
     fn maps_move_points_and_keep_t(model in model(), map in map(), aims in aims()) {
         let mapped = model.clone().mapped(map);
         let (here, there) = (scene(&model.solid()), scene(&mapped.solid()));
