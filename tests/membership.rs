@@ -66,6 +66,20 @@ fn walls_rims_and_apexes_are_on() {
     }
 }
 
+/// The planes of faces go on where the faces end.
+#[test]
+fn points_beside_a_face_in_its_plane_are_not_on() {
+    let ball = meshes::icosphere(1);
+    let scene = scene(&Solid::mesh(ball.clone()));
+    for face in ball.faces() {
+        let [a, b, c] = face.map(|i| ball.points()[i as usize]);
+        assert_eq!(at(&scene, (a + b + c) / 3.0), On);
+        assert_eq!(at(&scene, a + 0.25 * (b - a)), On);
+        assert_eq!(at(&scene, b + 0.7 * (b - a) + 0.1 * (c - a)), Out);
+        assert_eq!(at(&scene, a + 1e-9 * (2.0 * a - b - c)), Out);
+    }
+}
+
 /// The boundary is that of the solid, not of its leaves.
 #[test]
 fn points_on_buried_and_shared_faces_are_inside() {

@@ -162,7 +162,8 @@ impl Surface for Polyhedron {
             .expect("a mesh has at most u32::MAX faces")
     }
 
-    /// The faces in whose boxes the place is, give or take rounding, if it is near their planes.
+    /// The faces on which the place is, give or take rounding: those whose planes it is near and
+    /// which have it above their inside, or nearer to an edge than rounding.
     fn near(&self, spot: &Spot<'_>, visit: &mut dyn FnMut(u32, &Local)) {
         let (origin, dir, moved) = self.seen_from(spot);
         let bounds = self.mesh.faces.bounds();
@@ -171,7 +172,8 @@ impl Surface for Polyhedron {
         let point = origin + spot.t * dir;
         self.mesh.faces.around(&Aabb::new(point - pad, point + pad), |face| {
             let local = self.local(spot, face);
-            if local.is_near() {
+            let corners = self.mesh.mesh.corners(face as usize);
+            if local.is_near() && is_beside(point, corners, pad.length()) {
                 visit(face, &local);
             }
         });
@@ -228,6 +230,22 @@ impl Polyhedron {
         let range = (high - low) * shear.step;
         if area > 0.0 { range * (24.0 * U * edges / area).min(1.0) } else { range }
     }
+}
+
+/// Whether a point near the plane of a triangle is over it or this near to an edge.
+fn is_beside(point: DVec3, [a, b, c]: [DVec3; 3], near: f64) -> bool {
+    let normal = (b - a).cross(c - a);
+    let edges = [(a, b), (b, c), (c, a)];
+    let is_over = normal != DVec3::ZERO
+        && edges.iter().all(|(a, b)| normal.cross(b - a).dot(point - a) >= 0.0);
+    is_over || edges.iter().any(|&(a, b)| distance_to_edge(point, a, b) <= near)
+}
+
+fn distance_to_edge(point: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let (edge, away) = (b - a, point - a);
+    let part = away.dot(edge) / edge.length_squared();
+    let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
+    (away - part * edge).length()
 }
 
 /// The map that takes a line to the third axis.
