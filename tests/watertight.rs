@@ -250,6 +250,20 @@ fn again(leaf: &Solid) -> Solid {
     }
 }
 
+/// What rounding can have done along an axis has nothing to do with how a leaf is stretched
+/// along the others.
+#[test]
+fn real_gaps_beside_stretched_leaves_stay() {
+    for (stretch, gap) in [(1e4, 1e-8), (1e6, 1e-5), (1e6, 1e-6)] {
+        let wide = Solid::cuboid_between(DVec3::ZERO, DVec3::ONE)
+            .scaled(dvec3(stretch, stretch, 1.0))
+            .translated(dvec3(0.0, 0.0, 1.0 + gap));
+        let solid = Solid::cuboid_between(DVec3::ZERO, DVec3::ONE) + wide;
+        let list = ends(&solid, &Ray::new(dvec3(0.5, 0.5, -5.0), DVec3::Z));
+        assert_eq!(list.len(), 2, "{stretch:e}, {gap:e}: {list:?}");
+    }
+}
+
 /// The same solid by another product of maps: what is left of it, in all of a thousand
 /// cases, is nothing, seen along lines through its corners and faces.
 #[test]

@@ -397,8 +397,10 @@ impl Compiler {
         if !reach.is_bounded() {
             return Err(CompileError::Unbounded);
         }
-        let leaves = self.boxes.iter().zip(&self.conditions);
-        let extents = leaves.map(|(leaf, &c)| Extent::new(leaf, &reach, c)).collect();
+        let leaves = self.boxes.iter().zip(&self.conditions).zip(&self.slacks);
+        let extents = leaves
+            .map(|((leaf, &c), slack)| Extent::new(leaf, &reach, c, slack.within(&reach)))
+            .collect();
         let boxes = self.boxes.iter().map(|b| b.intersection(reach)).collect();
         Ok(Some(Outline { extents, boxes }))
     }

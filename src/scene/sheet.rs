@@ -12,6 +12,12 @@ use crate::shape::{Plane, Polyhedron, Profile, Wall};
 /// plane's equation by some 16 u more; this leaves room for a dozen nested maps.
 const ROUNDING: f64 = 64.0 * 0.5 * f64::EPSILON;
 
+/// The same in units of the bound that goes with a leaf, where that says less: under a map that
+/// stretches one way the condition number says nothing of the other. How far two surfaces are
+/// apart is estimated from their distance and their angle, each of which may be as large as the bound
+/// allows, and the angle counts for the whole leaf though a face may be a small part of it.
+const BOUNDS: f64 = 8.0;
+
 /// A leaf that rounding may have moved by more than this part of its size shares only what
 /// is the same to the bit: any plane near it would pass for any of its own, whichever way it
 /// faces. Where its map flattens it, its planes are that much closer to being parallel.
@@ -26,12 +32,13 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// Of a leaf within `bounds`, or within `scene` if it has no bounds itself.
-    pub(super) fn new(bounds: &Aabb, scene: &Aabb, condition: f64) -> Self {
+    /// Of a leaf within `bounds`, or within `scene` if it has no bounds itself, whose surfaces
+    /// are moved by rounding by no more than `slack`.
+    pub(super) fn new(bounds: &Aabb, scene: &Aabb, condition: f64, slack: f64) -> Self {
         let near = if bounds.is_bounded() { *bounds } else { *scene };
         let far = near.min.abs().max(near.max.abs()).max_element();
         let radius = 0.5 * near.size().length();
-        let rounding = ROUNDING * condition * far;
+        let rounding = (ROUNDING * condition * far).min(BOUNDS * slack);
         let is_lost = rounding * condition * LOST > radius;
         Self {
             center: near.center(),
