@@ -12,16 +12,16 @@ mod support;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
+use oracle::equal::{self, assert_equal_lists};
 use oracle::lattice::Lattice;
-use oracle::sweep::sweep;
 use proptest::collection::vec;
 use proptest::prelude::*;
-use solidray::{Mesh, Op, Ray, Scene, Sense};
+use solidray::{Mesh, Op, Ray};
 use support::algebra::{equal_pairs, in_common_frame, union};
 use support::dice::Dice;
 use support::model::{Leaf, Model, Shared};
 use support::strategies::{op, symmetry};
-use support::{ends_in, meshes, scene, spans};
+use support::{ends_in, meshes, scene};
 
 /// How many rays each tree is asked along: with the usual 1024 trees, 100,000.
 const RAYS: usize = 100;
@@ -149,59 +149,12 @@ impl Rays {
     }
 }
 
-/// The list is that of the whole numbers: as long, each place the closest number but for one
-/// rounding of the place as seen from the middle of the scene, each owner the same leaf.
-fn assert_equal_lists(scene: &Scene, model: &Model, lattice: &Lattice, ray: &Ray) {
-    let exact = sweep(model, &lattice.passages(ray));
-    let found: Vec<_> =
-        spans(scene, ray).iter().flat_map(|s| [s.enter, s.exit]).collect();
-    assert_eq!(found.len(), exact.len(), "{ray:?}: {found:?} instead of {exact:?}");
-    let size = scene.bounds().size().length() / ray.speed();
-    for (found, exact) in found.iter().zip(exact) {
-        let t = exact.t.rounded();
-        let error = (found.t - t).abs();
-        assert!(error <= f64::EPSILON * (t.abs() + size), "{ray:?}: {found:?}, {t}");
-        assert_eq!(found.sense == Sense::Enter, exact.enters, "{ray:?}: {found:?}");
-        assert_eq!(found.leaf as usize, exact.owner, "{ray:?}: {found:?}");
-    }
-}
-
-/// The list without what is shorter than the rounding of places inside triangles.
-fn without_slivers(list: Vec<[f64; 2]>, least: f64) -> Vec<[f64; 2]> {
-    let mut joined: Vec<[f64; 2]> = Vec::new();
-    for span in list {
-        match joined.last_mut() {
-            Some(last) if span[0] - last[1] < least => last[1] = span[1],
-            _ => joined.push(span),
-        }
-    }
-    joined.retain(|[enter, exit]| exit - enter >= least);
-    joined
-}
-
-/// Where a line passes a triangle is a quotient of sums of products, so that faces of
-/// meshes that coincide with others can be a few roundings apart. Directions of which the
-/// largest component is a power of two are sheared without rounding: then it is exact which
-/// triangles they pass.
+/// Asks along many rays. Where a mesh is passed is compared but for slivers.
 fn assert_equal_but_for_slivers(model: &Model, seed: u64) {
     let (scene, lattice) = (scene(&model.solid()), Lattice::new(model));
     let mut rays = Rays::new(model, seed);
     for _ in 0..RAYS {
-        let ray = rays.next();
-        if ray.dir.abs().max_element().log2().fract() != 0.0 {
-            continue;
-        }
-        let exact = sweep(model, &lattice.passages(&ray));
-        let size = scene.bounds().size().length() / ray.speed();
-        let far = exact.iter().map(|c| c.t.rounded().abs()).fold(size, f64::max);
-        let least = 16.0 * f64::EPSILON * far;
-        let found = without_slivers(ends_in(&scene, &ray), least);
-        let found: Vec<f64> = found.into_iter().flatten().collect();
-        assert_eq!(found.len(), exact.len(), "{ray:?}: {found:?} instead of {exact:?}");
-        for (t, exact) in found.iter().zip(exact) {
-            let error = (t - exact.t.rounded()).abs();
-            assert!(error <= least, "{ray:?}: {t} instead of {exact:?}");
-        }
+        equal::assert_equal_but_for_slivers(&scene, model, &lattice, &rays.next());
     }
 }
 

@@ -4,6 +4,7 @@
 //! A test file takes what it needs: `#[expect(dead_code, reason = "…")] mod oracle;`.
 
 pub(crate) mod compare;
+pub(crate) mod equal;
 pub(crate) mod lattice;
 pub(crate) mod placed;
 pub(crate) mod real;
