@@ -143,7 +143,7 @@ impl Cluster {
         /// More surfaces in one place are too many to try all orders.
         const MOST: usize = 6;
         let flip = |inside: &mut [Vec<bool>], set: usize| {
-            for (i, &[leaf, surface]) in self.crossed.iter().enumerate() {
+            for (i, &[leaf, surface]) in self.crossed.iter().take(MOST).enumerate() {
                 inside[leaf][surface] ^= set >> i & 1 == 1;
             }
         };
