@@ -4,14 +4,17 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, dvec3};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use solidray::{Op, Ray};
 
-use crate::bytes::{Parts, one_in_two, small, some, symmetry, three};
+use crate::bytes::{Parts, one_in_two, small, symmetry, three};
 use crate::support::model::{Leaf, Model};
 use crate::support::strategies::Aim;
 
 /// A tree and rays at it.
 pub(crate) fn case(bytes: &mut Unstructured) -> Result<(Model, Vec<Ray>)> {
+    // First the rays, so that large trees leave bytes for them.
+    let aims = (0..bytes.int_in_range(4..=12)?).map(|_| aim(bytes));
+    let aims = aims.collect::<Result<Vec<_>>>()?;
     let model = Parts { leaf: placed_leaf, map }.tree(bytes)?;
-    let rays = some(bytes, 12, |bytes| Ok(aim(bytes)?.ray(&model)))?;
+    let rays = aims.iter().map(|aim| aim.ray(&model)).collect();
     Ok((model, rays))
 }
 

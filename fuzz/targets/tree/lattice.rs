@@ -6,12 +6,14 @@ use glam::{DAffine3, DVec3};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use solidray::{Mesh, Op, Ray};
 
-use crate::bytes::{Parts, small, some, symmetry, three};
+use crate::bytes::{Parts, one_in_two, small, some, symmetry, three};
 use crate::support::meshes;
 use crate::support::model::{Leaf, Model, Shared};
 
 /// A bounded tree and rays at it.
 pub(crate) fn case(bytes: &mut Unstructured) -> Result<(Model, Vec<Ray>)> {
+    // Lists of trees without meshes are compared to the last bit and for every ray.
+    let leaf = if one_in_two(bytes)? { convex } else { convex_or_mesh };
     let tree = Parts { leaf, map }.tree(bytes)?;
     let guard = Leaf::Cuboid { min: DVec3::splat(-16.0), max: DVec3::splat(16.0) };
     let model = Model::boolean(Op::Intersection, [tree, Model::Leaf(guard)]);
@@ -35,27 +37,32 @@ fn corners(bytes: &mut Unstructured) -> Result<[DVec3; 2]> {
     Ok([min, max + thin])
 }
 
-fn leaf(bytes: &mut Unstructured) -> Result<Model> {
-    let leaf = match bytes.int_in_range(0..=7)? {
-        0..=3 => {
-            let [min, max] = corners(bytes)?;
-            Leaf::Cuboid { min, max }
-        }
-        4 | 5 => {
-            let (normal, offset) = (4.0 * point(bytes)?, 0.25 * small(bytes, 2)?);
-            let normal = if normal == DVec3::ZERO { DVec3::Y } else { normal };
-            Leaf::HalfSpace { normal, offset }
-        }
-        6 => {
-            let ([min, max], steps) = (corners(bytes)?, bytes.int_in_range(1..=2)?);
-            Leaf::Mesh(Shared(Arc::new(meshes::grid_box(min, max, steps))))
-        }
-        _ => tetrahedron([point(bytes)?, point(bytes)?, point(bytes)?, point(bytes)?]),
-    };
-    Ok(Model::Leaf(leaf))
+/// A box or a half-space.
+fn convex(bytes: &mut Unstructured) -> Result<Model> {
+    if bytes.int_in_range(0..=2)? < 2 {
+        let [min, max] = corners(bytes)?;
+        return Ok(Model::Leaf(Leaf::Cuboid { min, max }));
+    }
+    let (normal, offset) = (4.0 * point(bytes)?, 0.25 * small(bytes, 2)?);
+    let normal = if normal == DVec3::ZERO { DVec3::Y } else { normal };
+    Ok(Model::Leaf(Leaf::HalfSpace { normal, offset }))
 }
 
-/// A tetrahedron, or the box of four points in one plane.
+fn convex_or_mesh(bytes: &mut Unstructured) -> Result<Model> {
+    Ok(match bytes.int_in_range(0..=3)? {
+        0 | 1 => return convex(bytes),
+        2 => {
+            let ([min, max], steps) = (corners(bytes)?, bytes.int_in_range(1..=2)?);
+            Model::Leaf(Leaf::Mesh(Shared(Arc::new(meshes::grid_box(min, max, steps)))))
+        }
+        _ => {
+            let corners = [point(bytes)?, point(bytes)?, point(bytes)?, point(bytes)?];
+            Model::Leaf(tetrahedron(corners))
+        }
+    })
+}
+
+/// A tetrahedron, or a small box if the four points are in one plane.
 fn tetrahedron([a, b, c, d]: [DVec3; 4]) -> Leaf {
     let volume = (b - a).dot((c - a).cross(d - a));
     if volume == 0.0 {
