@@ -20,6 +20,9 @@ pub struct Tracer<'a> {
     /// How often each leaf has been entered and not yet left.
     winding: Vec<i32>,
     events: Vec<Event>,
+    /// Of the events at one place, which are of leaves that had the root's value before, as
+    /// had all nodes above them.
+    followers: Vec<bool>,
     pub(super) spans: Vec<Span>,
     /// How many spans and gaps of the ray asked last have both ends at the same number.
     pub(super) collapsed: u64,
@@ -40,6 +43,7 @@ impl<'a> Tracer<'a> {
             counts: scene.far_away.clone(),
             winding: vec![0; scene.shapes.len()],
             events: Vec::new(),
+            followers: Vec::new(),
             spans: Vec::new(),
             collapsed: 0,
         }
@@ -102,7 +106,10 @@ impl<'a> Tracer<'a> {
             #[expect(clippy::float_cmp, reason = "one place is one number")]
             let group =
                 self.events[from..].iter().take_while(|event| event.t == t).count();
-            let (before, after) = self.toggle(from..from + group);
+            let before = self.root();
+            self.note_followers(from..from + group, before);
+            self.toggle(from..from + group);
+            let after = self.root();
             if before != after {
                 let sense = if after { Sense::Enter } else { Sense::Exit };
                 let event = self.owner(from..from + group, after);
@@ -134,11 +141,9 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// Toggles the leaves of some events; says whether the root was true before and is
-    /// after.
-    fn toggle(&mut self, group: std::ops::Range<usize>) -> (bool, bool) {
+    /// Toggles the leaves of some events.
+    fn toggle(&mut self, group: std::ops::Range<usize>) {
         let Scene { program, literals, .. } = self.scene;
-        let before = program.root(&self.counts);
         for event in &self.events[group] {
             let literal = literals[event.leaf as usize];
             let winding = &mut self.winding[event.leaf as usize];
@@ -156,7 +161,6 @@ impl<'a> Tracer<'a> {
                 );
             }
         }
-        (before, program.root(&self.counts))
     }
 
     /// Toggles what lies up to `t = 0` of the ray asked last, and says how many events that are.
@@ -189,20 +193,44 @@ impl<'a> Tracer<'a> {
         self.scene.program.root(&self.counts)
     }
 
+    /// Notes which of some events are of leaves that have the root's value, as all nodes
+    /// above them do.
+    fn note_followers(&mut self, group: std::ops::Range<usize>, value: bool) {
+        let mut followers = std::mem::take(&mut self.followers);
+        followers.clear();
+        if group.len() > 1 {
+            let Scene { program, literals, .. } = self.scene;
+            let follows = |event: &Event| {
+                let literal = literals[event.leaf as usize];
+                (self.is_in(event.leaf) != literal.complement) == value
+                    && program.agrees(&self.counts, literal.parent, value)
+            };
+            followers.extend(self.events[group].iter().map(follows));
+        }
+        self.followers = followers;
+    }
+
     /// The event to which a change of the root is put down: the first in the order of the
-    /// tree whose leaf changed the same way and has all nodes above it on its side.
+    /// tree whose leaf changed the same way, and so did all nodes above it.
+    ///
+    /// There is one, for a node changes only if a child does so the same way. Nodes that keep
+    /// their value have no part in it; so it does not matter what is left out below nodes that are
+    /// decided anyway.
     fn owner(&self, group: std::ops::Range<usize>, value: bool) -> Event {
         let Scene { program, literals, .. } = self.scene;
         let events = &self.events[group];
-        let is_owner = |event: &&Event| {
+        let is_owner = |event: &Event| {
             let literal = literals[event.leaf as usize];
-            let is_inside = self.winding[event.leaf as usize] > 0;
+            let is_inside = self.is_in(event.leaf);
             let rises = (event.sense == Sense::Enter) != literal.complement;
             rises == value
                 && (is_inside != literal.complement) == value
                 && program.agrees(&self.counts, literal.parent, value)
         };
-        *events.iter().find(is_owner).unwrap_or(&events[0])
+        let mut owners = events.iter().zip(&self.followers);
+        owners
+            .find(|(event, followed)| **followed && is_owner(event))
+            .map_or(events[0], |(event, _)| *event)
     }
 }
 

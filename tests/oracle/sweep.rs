@@ -37,14 +37,13 @@ pub(crate) fn sweep<T: Ord + Copy>(
     assert!(!inside, "the tree is bounded");
     let mut changes = Vec::new();
     for group in events.chunk_by(|a, b| a.0 == b.0) {
-        let mut moved = vec![false; states.len()];
+        let before = states.clone();
         for &(_, leaf) in group {
             states[leaf] = !states[leaf];
-            moved[leaf] = true;
         }
         if holds(model, &states) != inside {
             inside = !inside;
-            let owner = Search { states: &states, moved: &moved, value: inside };
+            let owner = Search { before: &before, after: &states, value: inside };
             let owner = owner.first(model, false, &mut 0).expect("some leaf did it");
             changes.push(Change { t: group[0].0, enters: inside, owner });
         }
@@ -82,23 +81,24 @@ fn evaluate(model: &Model, states: &[bool], next: &mut usize) -> bool {
 }
 
 /// The search for the leaf that made a change: the first in the order of the tree that
-/// moved the same way and has all nodes above it on its side.
+/// changed the same way, as did all nodes above it.
 struct Search<'a> {
-    states: &'a [bool],
-    moved: &'a [bool],
+    before: &'a [bool],
+    after: &'a [bool],
     value: bool,
 }
 
 impl Search<'_> {
     fn first(&self, model: &Model, complement: bool, next: &mut usize) -> Option<usize> {
         let leaf = *next;
-        let agrees = evaluate(model, self.states, next) != complement;
-        if agrees != self.value {
+        let was = evaluate(model, self.before, &mut leaf.clone()) != complement;
+        let is = evaluate(model, self.after, next) != complement;
+        if was == self.value || is != self.value {
             return None;
         }
         let mut next = leaf;
         match model {
-            Model::Leaf(_) => self.moved[leaf].then_some(leaf),
+            Model::Leaf(_) => Some(leaf),
             Model::Mapped(_, child) => self.first(child, complement, &mut next),
             Model::Boolean(op, children) => {
                 children.iter().enumerate().find_map(|(i, child)| {
