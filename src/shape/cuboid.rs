@@ -3,10 +3,13 @@
 use glam::DVec3;
 
 use super::doubt::{Local, Spot};
+use super::line::{Line, Rays};
 use super::place::Frame;
 use super::plane::Plane;
-use super::{Line, Sink, Surface};
+use super::stretch::Stretch;
+use super::{ALL, Sink, Surface};
 use crate::aabb::Aabb;
+use crate::lanes::Lanes;
 
 /// A parallelepiped. Faces 0 to 5 are −x, +x, −y, +y, −z, +z of the box in its own frame.
 #[derive(Clone, Debug)]
@@ -27,6 +30,12 @@ impl Cuboid {
         Self { planes }
     }
 
+    /// Where lines are inside, as far as some of the faces say.
+    #[inline(always)]
+    pub(crate) fn stretch<L: Lanes>(&self, faces: u32, rays: &Rays<L>) -> Stretch<L> {
+        Plane::stretch(&self.planes, faces, rays)
+    }
+
     pub(crate) fn bounds(frame: &Frame, min: DVec3, max: DVec3) -> Aabb {
         frame.bounds(&Aabb::new(min, max))
     }
@@ -34,8 +43,7 @@ impl Cuboid {
 
 impl Surface for Cuboid {
     fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
-        let stretch = Plane::stretch(&self.planes, line);
-        sink.stretch(stretch.enter, stretch.exit);
+        sink.stretch(&self.stretch(ALL, &line.into()));
     }
 
     fn normal(&self, _point: DVec3, face: u32) -> DVec3 {

@@ -3,10 +3,13 @@
 use glam::DVec3;
 
 use super::doubt::{Local, Spot};
+use super::line::{Line, Rays};
 use super::place::Frame;
 use super::plane::Plane;
-use super::{Line, Sink, Surface};
+use super::stretch::Stretch;
+use super::{ALL, Sink, Surface};
 use crate::aabb::Aabb;
+use crate::lanes::Lanes;
 
 /// The points on one side of a plane, which is face 0.
 #[derive(Clone, Debug)]
@@ -18,6 +21,12 @@ impl HalfSpace {
     pub(crate) fn new(frame: &Frame, normal: DVec3, offset: f64) -> Self {
         let foot = normal * (offset / normal.length_squared());
         Self { planes: [Plane::new(frame, normal, offset, foot)] }
+    }
+
+    /// Where lines are inside.
+    #[inline(always)]
+    pub(crate) fn stretch<L: Lanes>(&self, rays: &Rays<L>) -> Stretch<L> {
+        Plane::stretch(&self.planes, ALL, rays)
     }
 
     /// Bounded on one side if the plane is square to an axis.
@@ -34,8 +43,7 @@ impl HalfSpace {
 
 impl Surface for HalfSpace {
     fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
-        let stretch = Plane::stretch(&self.planes, line);
-        sink.stretch(stretch.enter, stretch.exit);
+        sink.stretch(&self.stretch(&line.into()));
     }
 
     fn normal(&self, _point: DVec3, _face: u32) -> DVec3 {

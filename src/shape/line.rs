@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::doubt::U;
 use crate::aabb::Aabb;
 use crate::bvh::Slabs;
+use crate::lanes::{Lanes, Vec3};
 use crate::ray::Ray;
 
 /// A line in the frame in which leaves compute: its origin is near the scene and its
@@ -37,25 +38,19 @@ pub(crate) struct Line {
 impl Line {
     /// The ray as a line, unless it passes by the bounds or is not valid.
     pub(crate) fn new(ray: &Ray, bounds: &Aabb) -> Option<Self> {
-        if !ray.is_valid() || !bounds.is_bounded() {
+        if !bounds.is_bounded() {
             return None;
         }
-        let scale = inverse_power_of_two(ray.dir.abs().max_element());
-        let size = 1.0 / inverse_power_of_two(bounds.size().max_element());
-        // One factor after the other: their product need not be a number.
-        let (dir, scale) = (ray.dir * scale * size, scale * size);
-        if !scale.is_normal() {
-            return None;
-        }
-        let [near, far] = Slabs::new(ray.origin, dir, bounds).range(bounds);
-        // A range that is not finite belongs to a line too far away to be told apart.
-        if near > far || !near.is_finite() || !far.is_finite() {
-            return None;
-        }
-        let width = (far - near).max(LEAST_WIDTH);
-        let offset = coarse(0.5 * (near + far), width);
-        let [origin, rest] = advanced(ray.origin, offset, dir);
-        Some(Self { origin, rest, dir, offset, scale })
+        let (lines, met) = Lines::new(ray.origin.into(), ray.dir.into(), bounds);
+        let Lines { rays: Rays { origin, rest, dir }, offset, scale } = lines;
+        let line = Self {
+            origin: origin.into(),
+            rest: rest.into(),
+            dir: dir.into(),
+            offset,
+            scale,
+        };
+        met.then_some(line)
     }
 
     /// A place on this line as a place on the ray.
@@ -84,49 +79,126 @@ impl Line {
     }
 }
 
-/// The point `origin + steps · dir` as a sum of two, the second smaller than the rounding of
-/// the first (T. J. Dekker, "A Floating-Point Technique for Extending the Available
-/// Precision", Numerische Mathematik 18, 1971; the sum is that of D. E. Knuth).
-fn advanced(origin: DVec3, steps: f64, dir: DVec3) -> [DVec3; 2] {
-    let way = steps * dir;
-    let (high, [a, b]) = (halves(DVec3::splat(steps)), halves(dir));
-    let lost_way = ((high[0] * a - way) + high[0] * b + high[1] * a) + high[1] * b;
-    let sum = origin + way;
-    let back = sum - origin;
-    let lost = (origin - (sum - back)) + (way - back);
-    let rest = lost + lost_way;
-    // Numbers too large to be split have no rest.
-    [sum, if rest.is_finite() { rest } else { DVec3::ZERO }]
-}
-
-/// Numbers as sums of two with half the digits.
-fn halves(x: DVec3) -> [DVec3; 2] {
-    let large = 134_217_729.0 * x;
-    let high = large - (large - x);
-    [high, x - high]
-}
-
 /// A line that only touches the bounds counts as being inside for this part of a step:
 /// else there would be no round number near, and planes that meet where it touches would be
 /// crossed at different places. A millionth leaves a round number some 28 digits.
 const LEAST_WIDTH: f64 = 1.0 / 1_048_576.0;
 
-/// A number that differs from `x` by at most 1/256 of `width` and has no more digits than
-/// that takes.
-fn coarse(x: f64, width: f64) -> f64 {
-    let per_unit = 256.0 * inverse_power_of_two(width);
-    let rounded = (x * per_unit).round() / per_unit;
-    // Scenes as small as the smallest numbers have no room to round.
-    if rounded.is_finite() { rounded } else { x }
+/// One [`Line`] or several.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lines<L> {
+    pub(crate) rays: Rays<L>,
+    pub(crate) offset: L,
+    pub(crate) scale: L,
 }
 
-/// The power of two that brings a positive number into 1..2, or as near as one factor goes
-/// for denormal numbers and those above 2¹⁰²³, infinity among them.
+impl<L: Lanes> Lines<L> {
+    /// Rays as lines, and which of them are valid and meet the bounds, which are bounded.
+    #[inline(always)]
+    pub(crate) fn new(origin: Vec3<L>, dir: Vec3<L>, bounds: &Aabb) -> (Self, L::Mask) {
+        let like = origin.x;
+        let (zero, infinity) = (like.same(0.0), like.same(f64::INFINITY));
+        let largest = dir.largest();
+        let size = like.same(1.0 / inverse_power_of_two(bounds.size().max_element()));
+        let scale = largest.inverse_power_of_two();
+        // One factor after the other: their product need not be a number.
+        let (dir, scale) = (dir.scaled(scale).scaled(size), scale * size);
+        let is_normal = !scale.less(like.same(f64::MIN_POSITIVE)) & scale.less(infinity);
+        // What is not a number is not below infinity either.
+        let is_valid =
+            is_normal & zero.less(largest) & origin.sum_of_sizes().less(infinity);
+
+        let [near, far] = within(origin, dir, bounds);
+        // A range that is not finite belongs to a line too far away to be told apart.
+        let meets = !far.less(near) & near.is_finite() & far.is_finite();
+        let width = (far - near).max(like.same(LEAST_WIDTH));
+        let offset = coarse(like.same(0.5) * (near + far), width);
+        let [origin, rest] = advanced(origin, offset, dir);
+        (Self { rays: Rays { origin, rest, dir }, offset, scale }, is_valid & meets)
+    }
+}
+
+/// From where to where lines are in a box, widened as [`Slabs::new`] has it.
+#[inline(always)]
+fn within<L: Lanes>(origin: Vec3<L>, dir: Vec3<L>, bounds: &Aabb) -> [L; 2] {
+    let like = origin.x;
+    let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let pad = like.same(8.0 * f64::EPSILON) * (like.same(reach) + origin.largest());
+    let along = |low: f64, high: f64, origin: L, dir: L| {
+        let most = like.same(f64::MAX);
+        let inverse = (like.same(1.0) / dir).min(most).max(-most);
+        let low = ((like.same(low) - pad) - origin) * inverse;
+        let high = ((like.same(high) + pad) - origin) * inverse;
+        [low.min(high), low.max(high)]
+    };
+    let Aabb { min, max } = *bounds;
+    let [x0, x1] = along(min.x, max.x, origin.x, dir.x);
+    let [y0, y1] = along(min.y, max.y, origin.y, dir.y);
+    let [z0, z1] = along(min.z, max.z, origin.z, dir.z);
+    [x0.max(y0).max(z0), x1.min(y1).min(z1)]
+}
+
+/// The point `origin + steps · dir` as a sum of two, the second smaller than the rounding of
+/// the first (T. J. Dekker, "A Floating-Point Technique for Extending the Available
+/// Precision", Numerische Mathematik 18, 1971; the sum is that of D. E. Knuth).
+#[inline(always)]
+fn advanced<L: Lanes>(origin: Vec3<L>, steps: L, dir: Vec3<L>) -> [Vec3<L>; 2] {
+    let [steps_high, steps_low] = halves(steps);
+    let along = |origin: L, dir: L| {
+        let way = steps * dir;
+        let [a, b] = halves(dir);
+        let lost_way =
+            ((steps_high * a - way) + steps_high * b + steps_low * a) + steps_low * b;
+        let sum = origin + way;
+        let back = sum - origin;
+        let lost = (origin - (sum - back)) + (way - back);
+        [sum, lost + lost_way]
+    };
+    let [x, x_rest] = along(origin.x, dir.x);
+    let [y, y_rest] = along(origin.y, dir.y);
+    let [z, z_rest] = along(origin.z, dir.z);
+    // Numbers too large to be split have no rest.
+    let zero = steps.same(0.0);
+    let has_rest = x_rest.is_finite() & y_rest.is_finite() & z_rest.is_finite();
+    let rest = |r: L| L::select(has_rest, r, zero);
+    [Vec3 { x, y, z }, Vec3 { x: rest(x_rest), y: rest(y_rest), z: rest(z_rest) }]
+}
+
+/// Numbers as sums of two with half the digits.
+#[inline(always)]
+fn halves<L: Lanes>(x: L) -> [L; 2] {
+    let large = x.same(134_217_729.0) * x;
+    let high = large - (large - x);
+    [high, x - high]
+}
+
+/// Numbers that differ from `x` by at most 1/256 of `width` and have no more digits than
+/// that takes.
+#[inline(always)]
+fn coarse<L: Lanes>(x: L, width: L) -> L {
+    let per_unit = x.same(256.0) * width.inverse_power_of_two();
+    let rounded = (x * per_unit).round() / per_unit;
+    // Scenes as small as the smallest numbers have no room to round.
+    L::select(rounded.is_finite(), rounded, x)
+}
+
+/// [`Lanes::inverse_power_of_two`] of one number.
 pub(crate) fn inverse_power_of_two(x: f64) -> f64 {
-    /// The exponent field of 1.0.
-    const BIAS: u64 = 1023;
-    // The field of 2⁻ᵉ is 2 BIAS minus that of 2ᵉ; both ends of its range are taken by
-    // other kinds of numbers.
-    let field = (2 * BIAS).saturating_sub(x.to_bits() >> 52).clamp(1, 2 * BIAS - 1);
-    f64::from_bits(field << 52)
+    Lanes::inverse_power_of_two(x)
+}
+
+/// One line or several, as leaves see them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rays<L> {
+    pub(crate) origin: Vec3<L>,
+    pub(crate) rest: Vec3<L>,
+    pub(crate) dir: Vec3<L>,
+}
+
+impl From<&Line> for Rays<f64> {
+    #[inline(always)]
+    fn from(line: &Line) -> Self {
+        let Line { origin, rest, dir, .. } = *line;
+        Self { origin: origin.into(), rest: rest.into(), dir: dir.into() }
+    }
 }

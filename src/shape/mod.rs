@@ -18,6 +18,7 @@ mod plane;
 mod polyhedron;
 mod primitive;
 mod quadric;
+mod stretch;
 mod wall;
 #[cfg(test)]
 mod watertight;
@@ -39,6 +40,7 @@ pub(crate) use plane::Plane;
 pub(crate) use polyhedron::{IndexedMesh, Polyhedron};
 pub use primitive::{BadParameter, Primitive, Profile};
 use quadric::Quadric;
+use stretch::Stretch;
 pub(crate) use wall::Wall;
 
 /// What a leaf owes.
@@ -270,11 +272,11 @@ pub(crate) struct Sink<'a> {
 }
 
 impl Sink<'_> {
-    /// The line is inside from one `(t, face)` to another; nothing if that is empty.
-    fn stretch(&mut self, enter: (f64, u32), exit: (f64, u32)) {
-        if enter.0 < exit.0 {
-            self.crossing(enter.0, enter.1, Sense::Enter);
-            self.crossing(exit.0, exit.1, Sense::Exit);
+    /// The line is inside on a stretch; nothing if that is empty.
+    fn stretch(&mut self, stretch: &Stretch<f64>) {
+        if stretch.enter < stretch.exit {
+            self.crossing(stretch.enter, face_of(stretch.enter_face), Sense::Enter);
+            self.crossing(stretch.exit, face_of(stretch.exit_face), Sense::Exit);
         }
     }
 
@@ -282,3 +284,16 @@ impl Sink<'_> {
         self.events.push(Event { t, leaf: self.leaf, face, sense });
     }
 }
+
+/// The number of a face that was kept among the numbers of a stretch.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "faces of leaves that have stretches are numbered from 0 to 5"
+)]
+pub(crate) fn face_of(number: f64) -> u32 {
+    number as u32
+}
+
+/// All faces of a leaf that has no more than there are bits.
+pub(crate) const ALL: u32 = u32::MAX;

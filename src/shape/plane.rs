@@ -2,9 +2,11 @@
 
 use glam::DVec3;
 
-use super::Line;
 use super::doubt::{Local, Spot, U};
+use super::line::{Line, Rays};
 use super::place::Frame;
+use super::stretch::Stretch;
+use crate::lanes::{Lanes, Vec3};
 
 /// One side of a plane: the points with `normal · p ≤ offset`, or `≥` if it is `above`.
 ///
@@ -15,12 +17,6 @@ pub(crate) struct Plane {
     pub(crate) normal: DVec3,
     pub(crate) offset: f64,
     pub(crate) above: bool,
-}
-
-/// A stretch of a line and the numbers of the planes that begin and end it.
-pub(crate) struct Stretch {
-    pub(crate) enter: (f64, u32),
-    pub(crate) exit: (f64, u32),
 }
 
 impl Plane {
@@ -92,39 +88,43 @@ impl Plane {
         (self.offset - self.normal.dot(line.origin)) - self.normal.dot(line.rest)
     }
 
-    /// From where to where a line is inside: half of it, all or nothing.
+    /// From where to where lines are inside: half of each, all or nothing.
     ///
     /// A line within the plane is inside if it would be after a small move along the normal:
     /// solids on the two sides of a plane share such lines out.
-    fn inside(&self, line: &Line) -> [f64; 2] {
-        let speed = self.normal.dot(line.dir);
-        let to_plane = self.height_above(line);
-        if speed == 0.0 {
-            return if (to_plane <= 0.0) == self.above {
-                [f64::NEG_INFINITY, f64::INFINITY]
-            } else {
-                [f64::INFINITY, f64::NEG_INFINITY]
-            };
-        }
+    #[inline(always)]
+    fn inside<L: Lanes>(&self, rays: &Rays<L>) -> [L; 2] {
+        let Rays { origin, rest, dir } = *rays;
+        let like = origin.x;
+        let [never, always] = [f64::INFINITY, f64::NEG_INFINITY].map(|t| like.same(t));
+        let zero = like.same(0.0);
+        let normal = Vec3::same(like, self.normal);
+        let speed = normal.dot(dir);
+        let to_plane = (like.same(self.offset) - normal.dot(origin)) - normal.dot(rest);
+        let (parallel, rising) = (speed.equal(zero), zero.less(speed));
+        let is_above = !zero.less(to_plane);
         let t = to_plane / speed;
-        if (speed > 0.0) == self.above {
-            [t, f64::INFINITY]
-        } else {
-            [f64::NEG_INFINITY, t]
-        }
+        let (goes_in, stays) =
+            if self.above { (rising, is_above) } else { (!rising, !is_above) };
+        let none = parallel & !stays;
+        let from = L::select(goes_in & !parallel, t, always);
+        let to = L::select(goes_in | parallel, never, t);
+        [L::select(none, never, from), L::select(none, always, to)]
     }
 
-    /// The stretch of a line on the inner side of all planes; may be empty or infinite.
-    pub(crate) fn stretch(planes: &[Self], line: &Line) -> Stretch {
-        let mut stretch =
-            Stretch { enter: (f64::NEG_INFINITY, 0), exit: (f64::INFINITY, 0) };
+    /// The stretches of lines on the inner side of all planes whose bits are `wanted`, the
+    /// last plane's the lowest; may be empty or infinite.
+    #[inline(always)]
+    pub(super) fn stretch<L: Lanes>(
+        planes: &[Self],
+        wanted: u32,
+        rays: &Rays<L>,
+    ) -> Stretch<L> {
+        let mut stretch = Stretch::all(rays.origin.x);
         for (face, plane) in (0..).zip(planes) {
-            let [from, to] = plane.inside(line);
-            if from > stretch.enter.0 {
-                stretch.enter = (from, face);
-            }
-            if to < stretch.exit.0 {
-                stretch.exit = (to, face);
+            if wanted >> face & 1 == 1 {
+                let [from, to] = plane.inside(rays);
+                stretch = stretch.cut(from, to, face);
             }
         }
         stretch

@@ -3,13 +3,15 @@
 use glam::DVec3;
 
 use super::doubt::{Local, Spot};
-use super::line::inverse_power_of_two;
+use super::line::{Line, Rays, inverse_power_of_two};
 use super::place::Frame;
 use super::plane::Plane;
 use super::primitive::Profile;
+use super::stretch::Stretch;
 use super::wall::Wall;
-use super::{Line, Sink, Surface};
+use super::{ALL, Sink, Surface};
 use crate::aabb::Aabb;
+use crate::lanes::Lanes;
 
 /// A quadric. Face 0 is the curved one, 1 the bottom and 2 the top.
 #[derive(Clone, Debug)]
@@ -36,6 +38,26 @@ impl Quadric {
         let wall =
             Wall::new(profile.in_units_of(unit), frame.to_local_in_units_of(unit), ends);
         Self { wall, planes }
+    }
+
+    /// Where lines are inside, as far as some of the faces say. There is no second stretch
+    /// where the profile [cannot be left twice](Profile::can_be_left_twice).
+    #[inline(always)]
+    pub(crate) fn stretches<L: Lanes>(
+        &self,
+        faces: u32,
+        rays: &Rays<L>,
+    ) -> [Stretch<L>; 2] {
+        let planes = self.planes.as_ref().map_or(&[][..], |planes| planes);
+        let mut between = Plane::stretch(planes, faces >> 1, rays);
+        // The faces of the planes come after that of the wall.
+        let one = between.enter_face.same(1.0);
+        between.enter_face = between.enter_face + one;
+        between.exit_face = between.exit_face + one;
+        if faces & 1 == 0 {
+            return [between; 2];
+        }
+        self.wall.inside(rays).map(|[from, to]| between.cut(from, to, 0))
     }
 
     pub(crate) fn bounds(frame: &Frame, profile: Profile, bottom: f64, top: f64) -> Aabb {
@@ -78,17 +100,10 @@ impl Quadric {
 
 impl Surface for Quadric {
     fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
-        let planes = self.planes.as_ref().map_or(&[][..], |planes| planes);
-        let ends = Plane::stretch(planes, line);
-        let (low, high) =
-            ((ends.enter.0, ends.enter.1 + 1), (ends.exit.0, ends.exit.1 + 1));
-        if low.0 >= high.0 {
-            return;
-        }
-        for [enter, exit] in self.wall.inside(line).into_iter().flatten() {
-            let enter = if enter > low.0 { (enter, 0) } else { low };
-            let exit = if exit < high.0 { (exit, 0) } else { high };
-            sink.stretch(enter, exit);
+        let [first, second] = self.stretches(ALL, &line.into());
+        sink.stretch(&first);
+        if self.wall.profile.can_be_left_twice() {
+            sink.stretch(&second);
         }
     }
 

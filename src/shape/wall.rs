@@ -6,7 +6,8 @@
 //! the line's origin is far away compared to the size of the solid, because C is then a
 //! small difference of large squares; no care with the discriminant brings them back.
 //! So the origin is moved: first to the point closest to the middle of the solid, then to
-//! the vertex of the parabola, where B is zero but for rounding, the discriminant is
+//! the vertex of the parabola (for balls and cylinders the same point), where B is zero but for
+//! rounding, the discriminant is
 //! −A C without cancellation, and C is a product of a sum and a difference of lengths
 //! (numbers for the closest approach: Haines, Günther, Akenine-Möller, Ray Tracing Gems,
 //! ch. 7, 2019). The second move is left out when the vertex is far away: then the line is
@@ -15,11 +16,11 @@
 
 use glam::{DMat3, DVec3};
 
-use super::Line;
 use super::doubt::{Local, Spot, U};
-use super::line::inverse_power_of_two;
+use super::line::Rays;
 use super::place::ToLocal;
 use super::primitive::Profile;
+use crate::lanes::{Lanes, Vec3};
 
 /// A quadric that nothing cuts, `x² + y² ≤ ρ(z)` in its own frame.
 #[derive(Clone, Copy, Debug)]
@@ -50,82 +51,107 @@ impl Wall {
     /// A normal of any length, outward, at a world point.
     pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
         let p = self.to_local.point(point);
-        self.to_local.normal_to_world(self.profile.half_gradient(p))
+        self.to_local.normal_to_world(self.profile.half_gradient(p.into()).into())
     }
 
-    /// Where `q ≤ 0` on a line: one or two stretches, perhaps infinite.
-    pub(crate) fn inside(&self, line: &Line) -> [Option<[f64; 2]>; 2] {
-        let Approach { step, moved, p, a, b, .. } = self.approach(line);
+    /// Where `q ≤ 0` on lines: one or two stretches of each, perhaps infinite, perhaps empty.
+    #[inline(always)]
+    pub(super) fn inside<L: Lanes>(&self, rays: &Rays<L>) -> [[L; 2]; 2] {
+        let course = self.course(rays.dir);
+        let Approach { moved, p, b, .. } = self.approach(&course, rays);
+        let Course { a, step, .. } = course;
         let c = self.profile.value(p);
-        let all = Some([f64::NEG_INFINITY, f64::INFINITY]);
-        if a == 0.0 {
-            let root = (moved - 0.5 * c / b) * step;
-            return if b > 0.0 {
-                [Some([f64::NEG_INFINITY, root]), None]
-            } else if b < 0.0 {
-                [Some([root, f64::INFINITY]), None]
-            } else {
-                [all.filter(|_| c < 0.0), None]
-            };
-        }
+        let like = a;
+        let [never, always] = [f64::INFINITY, f64::NEG_INFINITY].map(|t| like.same(t));
+        let zero = like.same(0.0);
         let discriminant = b * b - a * c;
-        // Not a number where the scene is too large for the leaf to be told from a point.
-        if discriminant <= 0.0 || !discriminant.is_finite() {
-            return [all.filter(|_| a < 0.0), None];
-        }
         let root = discriminant.sqrt();
-        let q = -(b + root.copysign(b));
+        let falls = b.less(zero);
+        let q = -(b + L::select(falls, -root, root));
         // Zero has a sign, but the line has no side to choose there: both roots by one
         // formula, so that the reversed line gives the same bits.
-        let (first, second) =
-            if b == 0.0 { (-root / a, root / a) } else { (q / a, c / q) };
-        let (first, second) = ((moved + first) * step, (moved + second) * step);
-        let (first, second) = (first.min(second), first.max(second));
-        if a > 0.0 {
-            [Some([first, second]), None]
-        } else {
-            [Some([f64::NEG_INFINITY, first]), Some([second, f64::INFINITY])]
+        let balanced = b.equal(zero);
+        let one = L::select(balanced, -root, q) / a;
+        let other = L::select(balanced, root, c) / L::select(balanced, a, q);
+        let (one, other) = ((moved + one) * step, (moved + other) * step);
+        let (first, second) = (one.min(other), one.max(other));
+        // Not a number where the scene is too large for the leaf to be told from a point.
+        let crosses = zero.less(discriminant) & discriminant.is_finite();
+        let mut from = L::select(crosses, first, never);
+        let mut to = L::select(crosses, second, always);
+        if let Profile::Ball { .. } = self.profile {
+            return [[from, to], [never, always]];
         }
+        let linear = a.equal(zero);
+        let root = (moved - like.same(0.5) * c / b) * step;
+        let holds = !balanced | c.less(zero);
+        from = L::select(linear, L::select(falls, root, always), from);
+        from = L::select(linear & !holds, never, from);
+        to = L::select(linear, L::select(zero.less(b), root, never), to);
+        to = L::select(linear & !holds, always, to);
+        if !self.profile.can_be_left_twice() {
+            return [[from, to], [never, always]];
+        }
+        let opens = a.less(zero);
+        from = L::select(opens, always, from);
+        to = L::select(opens, L::select(crosses, first, never), to);
+        let again = opens & crosses;
+        [[from, to], [L::select(again, second, never), L::select(again, never, always)]]
     }
 
-    /// Moves the origin of a line to where the roots are best found.
-    fn approach(&self, line: &Line) -> Approach {
-        let origin = self.to_local.origin_of(line);
-        let dir = self.to_local.direction(line.dir);
+    /// What depends on the direction of lines alone.
+    #[inline(always)]
+    fn course<L: Lanes>(&self, dir: Vec3<L>) -> Course<L> {
+        let dir = dir.mapped(&self.to_local.linear);
         // Where the scene is far larger than the leaf, squares of steps are no numbers.
-        let step = inverse_power_of_two(dir.abs().max_element());
-        let dir = dir * step;
-        let a = self.profile.quadratic(dir);
-        let mut moved = self.closest_approach(origin, dir, a);
-        let mut way = moved.abs();
-        let mut p = origin + moved * dir;
-        let mut b = self.profile.linear(p, dir);
-        let to_vertex = -b / a;
-        if self.is_near(to_vertex, dir) {
-            p += to_vertex * dir;
-            moved += to_vertex;
-            way += to_vertex.abs();
-            b = self.profile.linear(p, dir);
+        let step = dir.largest().inverse_power_of_two();
+        let dir = dir.scaled(step);
+        Course { dir, step, a: self.profile.quadratic(dir) }
+    }
+
+    /// Moves the origins of lines to where the roots are best found.
+    #[inline(always)]
+    fn approach<L: Lanes>(&self, course: &Course<L>, rays: &Rays<L>) -> Approach<L> {
+        let Course { dir, a, .. } = *course;
+        let away = (rays.origin - Vec3::same(a, self.to_local.origin)) + rays.rest;
+        let origin = away.mapped(&self.to_local.linear);
+        let closest = self.closest_approach(origin, course);
+        let p = origin + dir.scaled(closest);
+        let b = self.profile.linear(p, dir);
+        let near = Approach { origin, moved: closest, way: closest.abs(), p, b };
+        if let Profile::Ball { .. } | Profile::Cylinder { .. } = self.profile {
+            return near;
         }
-        Approach { origin, dir, step, moved, way, p, a, b }
+        let to_vertex = -b / a;
+        let reach = a.same(NEAR * self.reach);
+        let is_near = !reach.less(to_vertex.abs() * dir.length());
+        let move_on = L::select(is_near & to_vertex.is_finite(), to_vertex, a.same(0.0));
+        let p = p + dir.scaled(move_on);
+        let b = self.profile.linear(p, dir);
+        Approach { origin, moved: closest + move_on, way: near.way + move_on.abs(), p, b }
     }
 }
 
-/// A line in the frame of a wall.
-struct Approach {
-    origin: DVec3,
-    dir: DVec3,
-    /// `dir` in multiples of the line's direction.
-    step: f64,
-    /// From the origin to `p`, in multiples of `dir`.
-    moved: f64,
-    /// The length of that way, there and back, in multiples of `dir`.
-    way: f64,
+/// The direction of lines in the frame of a wall.
+struct Course<L> {
+    dir: Vec3<L>,
+    /// `dir` in multiples of the lines' direction.
+    step: L,
+    /// A: the quadratic coefficient.
+    a: L,
+}
+
+/// Lines in the frame of a wall.
+struct Approach<L> {
+    origin: Vec3<L>,
+    /// From the origin to `p`, in multiples of the direction.
+    moved: L,
+    /// The length of that way, there and back.
+    way: L,
     /// The point from which roots are sought.
-    p: DVec3,
-    /// A and B there.
-    a: f64,
-    b: f64,
+    p: Vec3<L>,
+    /// B there.
+    b: L,
 }
 
 impl Wall {
@@ -138,8 +164,12 @@ impl Wall {
     /// `ΔA τ² + 2 ΔB |τ| + ΔC`; and τ itself is rounded by 8 u.
     pub(super) fn local(&self, spot: &Spot<'_>) -> Local {
         let Spot { line, t, slack } = *spot;
-        let Approach { origin, dir, step, moved, way, p: vertex, .. } =
-            self.approach(line);
+        let course = self.course(line.dir.into());
+        let Approach { origin, moved, way, p: vertex, .. } =
+            self.approach(&course, &line.into());
+        let Course { dir, step, a } = course;
+        let (dir, origin, vertex): (DVec3, DVec3, DVec3) =
+            (dir.into(), origin.into(), vertex.into());
         let t = t / step;
         let size = self.to_local.linear.abs();
         let away = (line.origin - self.to_local.origin).abs();
@@ -152,7 +182,8 @@ impl Wall {
         let [zz, z, _] = self.profile.coefficients();
         let weights = DVec3::new(1.0, 1.0, zz.abs());
         let p = origin + t * dir;
-        let (gradient, d) = (self.profile.half_gradient(p), dir.abs());
+        let (gradient, d) = (self.profile.half_gradient(p.into()), dir.abs());
+        let gradient = DVec3::from(gradient);
         let tau = (t - moved).abs();
         let of_a = 4.0 * U * weights.dot(d * d);
         let of_b = 4.0 * U * (weights.dot(vertex.abs() * d) + z.abs() * d.z);
@@ -163,40 +194,27 @@ impl Wall {
             + self.profile.value_rounding(p)
             + 8.0 * U * slope.abs() * (tau + way);
         Local {
-            value: self.profile.value(p),
+            value: self.profile.value(p.into()),
             rounding,
             slope: slope / step,
             slope_rounding: (2.0 * weights.dot(m * d) + 2.0 * of_b) / step,
-            bend: self.profile.quadratic(dir) / step / step,
+            bend: a / step / step,
             bend_rounding: of_a / step / step,
         }
     }
 
-    /// How far along a line it comes closest to the middle; to the axis of a cylinder, which
+    /// How far along lines they come closest to the middle; to the axis of a cylinder, which
     /// has no middle: then it does not matter how much of the cylinder is wanted.
-    fn closest_approach(&self, origin: DVec3, dir: DVec3, quadratic: f64) -> f64 {
+    #[inline(always)]
+    fn closest_approach<L: Lanes>(&self, origin: Vec3<L>, course: &Course<L>) -> L {
+        let Course { dir, a, .. } = *course;
         if let Profile::Cylinder { .. } = self.profile {
-            if quadratic == 0.0 {
-                return 0.0;
-            }
-            return -self.profile.linear(origin, dir) / quadratic;
+            let zero = a.same(0.0);
+            let closest = -self.profile.linear(origin, dir) / a;
+            return L::select(a.equal(zero), zero, closest);
         }
-        let to_middle = origin - DVec3::new(0.0, 0.0, self.middle);
-        -to_middle.dot(dir) / dir.length_squared()
-    }
-
-    /// Whether to move on to the vertex. For balls and cylinders that is the closest
-    /// approach once more.
-    fn is_near(&self, to_vertex: f64, dir: DVec3) -> bool {
-        match self.profile {
-            Profile::Ball { .. } | Profile::Cylinder { .. } => to_vertex.is_finite(),
-            Profile::Cone { .. }
-            | Profile::Paraboloid { .. }
-            | Profile::OneSheet { .. }
-            | Profile::TwoSheets { .. } => {
-                to_vertex.abs() * dir.length() <= NEAR * self.reach
-            }
-        }
+        let to_middle = Vec3 { z: origin.z - a.same(self.middle), ..origin };
+        -to_middle.dot(dir) / dir.dot(dir)
     }
 }
 
@@ -292,7 +310,7 @@ impl Wall {
             slope(0),
             slope(1),
             slope(2),
-            self.profile.value(p),
+            self.profile.value(p.into()),
         ]
     }
 
@@ -366,22 +384,32 @@ impl Profile {
         }
     }
 
-    /// `x² + y² − ρ(z)` at a point, as a product where it is a difference of squares.
-    fn value(&self, p: DVec3) -> f64 {
-        let across = p.truncate().length();
+    /// Whether a line can come out of it twice.
+    pub(crate) const fn can_be_left_twice(&self) -> bool {
+        match self {
+            Self::Ball { .. } | Self::Cylinder { .. } | Self::Paraboloid { .. } => false,
+            Self::Cone { .. } | Self::OneSheet { .. } | Self::TwoSheets { .. } => true,
+        }
+    }
+
+    /// `x² + y² − ρ(z)` at points, as a product where it is a difference of squares.
+    #[inline(always)]
+    fn value<L: Lanes>(&self, p: Vec3<L>) -> L {
+        let same = |x: f64| p.x.same(x);
         match *self {
-            Self::Ball { radius } => difference_of_squares(p.length(), radius),
-            Self::Cylinder { radius } => difference_of_squares(across, radius),
+            Self::Ball { radius } => difference_of_squares(p.length(), same(radius)),
+            Self::Cylinder { radius } => difference_of_squares(p.across(), same(radius)),
             Self::Cone { radius, slope } => {
-                difference_of_squares(across, radius + slope * p.z)
+                difference_of_squares(p.across(), same(radius) + same(slope) * p.z)
             }
-            Self::Paraboloid { scale } => across * across - scale * p.z,
+            Self::Paraboloid { scale } => (p.x * p.x + p.y * p.y) - same(scale) * p.z,
             Self::OneSheet { waist, slope } => {
-                difference_of_squares(across, waist.hypot(slope * p.z))
+                difference_of_squares(p.across(), hypot(same(waist), same(slope) * p.z))
             }
-            Self::TwoSheets { vertex, slope } => {
-                difference_of_squares(across.hypot(slope * vertex), slope * p.z)
-            }
+            Self::TwoSheets { vertex, slope } => difference_of_squares(
+                hypot(p.across(), same(slope * vertex)),
+                same(slope) * p.z,
+            ),
         }
     }
 
@@ -416,41 +444,52 @@ impl Profile {
     }
 
     /// Half the gradient of [`Profile::value`].
-    fn half_gradient(&self, p: DVec3) -> DVec3 {
+    #[inline(always)]
+    fn half_gradient<L: Lanes>(&self, p: Vec3<L>) -> Vec3<L> {
+        let same = |x: f64| p.x.same(x);
         let z = match *self {
             Self::Ball { .. } => p.z,
-            Self::Cylinder { .. } => 0.0,
-            Self::Cone { radius, slope } => -slope * (radius + slope * p.z),
-            Self::Paraboloid { scale } => -0.5 * scale,
+            Self::Cylinder { .. } => same(0.0),
+            Self::Cone { radius, slope } => {
+                same(-slope) * (same(radius) + same(slope) * p.z)
+            }
+            Self::Paraboloid { scale } => same(-0.5 * scale),
             Self::OneSheet { slope, .. } | Self::TwoSheets { slope, .. } => {
-                -slope * slope * p.z
+                same(-slope * slope) * p.z
             }
         };
-        DVec3::new(p.x, p.y, z)
+        Vec3 { z, ..p }
     }
 
-    /// A: the quadratic coefficient along a direction.
-    fn quadratic(&self, d: DVec3) -> f64 {
+    /// A: the quadratic coefficient along directions.
+    #[inline(always)]
+    fn quadratic<L: Lanes>(&self, d: Vec3<L>) -> L {
         match *self {
-            Self::Ball { .. } => d.length_squared(),
-            Self::Cylinder { .. } | Self::Paraboloid { .. } => {
-                d.truncate().length_squared()
-            }
+            Self::Ball { .. } => d.dot(d),
+            Self::Cylinder { .. } | Self::Paraboloid { .. } => d.x * d.x + d.y * d.y,
             Self::Cone { slope, .. }
             | Self::OneSheet { slope, .. }
             | Self::TwoSheets { slope, .. } => {
-                difference_of_squares(d.truncate().length(), slope * d.z)
+                difference_of_squares(d.across(), d.z.same(slope) * d.z)
             }
         }
     }
 
-    /// B: half the derivative of the value along a direction.
-    fn linear(&self, p: DVec3, d: DVec3) -> f64 {
+    /// B: half the derivative of the value along directions.
+    #[inline(always)]
+    fn linear<L: Lanes>(&self, p: Vec3<L>, d: Vec3<L>) -> L {
         self.half_gradient(p).dot(d)
     }
 }
 
 /// `a² − b²` with a relative error of a few units for exact operands.
-fn difference_of_squares(a: f64, b: f64) -> f64 {
+#[inline(always)]
+fn difference_of_squares<L: Lanes>(a: L, b: L) -> L {
     (a - b) * (a + b)
+}
+
+/// The length of (a, b), which are neither too large nor too small for their squares.
+#[inline(always)]
+fn hypot<L: Lanes>(a: L, b: L) -> L {
+    (a * a + b * b).sqrt()
 }
