@@ -124,14 +124,24 @@ impl Bvh {
     }
 
     /// Calls `visit` with each item at an end whose box touches a box.
-    pub(crate) fn around(&self, place: &Aabb, mut visit: impl FnMut(u32)) {
+    pub(crate) fn around(&self, place: &Aabb, visit: impl FnMut(u32)) {
+        self.meeting(|bounds| !bounds.intersection(*place).is_empty(), visit);
+    }
+
+    /// Calls `visit` with each item at an end whose box, as all those around it, has a
+    /// property.
+    pub(crate) fn meeting(
+        &self,
+        has: impl Fn(&Aabb) -> bool,
+        mut visit: impl FnMut(u32),
+    ) {
         if self.items.is_empty() {
             return;
         }
         let mut later = vec![0_u32];
         while let Some(at) = later.pop() {
             let Node { bounds, first, count } = &self.nodes[at as usize];
-            if bounds.intersection(*place).is_empty() {
+            if !has(bounds) {
                 continue;
             }
             if *count > 0 {
@@ -231,7 +241,7 @@ fn count(n: usize) -> u32 {
 }
 
 /// A line as box tests want it.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Slabs {
     origin: DVec3,
     inverse: DVec3,

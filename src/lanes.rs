@@ -4,6 +4,9 @@
 //! rays use [`Vector`], whose width is chosen at run time for the machine. Both do the same
 //! operations in the same order, each rounded by itself: products and sums are never fused.
 //! So an answer does not depend on which of the two has found it, nor on the machine.
+//!
+//! Whatever works on lanes is inlined into the one function that was compiled for the
+//! machine's vectors: each function says so, and there are no closures, which could not.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -194,12 +197,13 @@ impl<S: Simd> Lanes for Vector<S> {
     #[inline(always)]
     fn inverse_power_of_two(self) -> Self {
         let simd = self.0;
-        let field = |n: u64| simd.splat_u64s(n << 52);
-        let bits = simd.and_u64s(simd.transmute_u64s_f64s(self.1), field(2 * BIAS + 1));
-        let inverse = simd.sub_u64s(field(2 * BIAS), bits);
+        let field = simd.splat_u64s((2 * BIAS + 1) << 52);
+        let bits = simd.and_u64s(simd.transmute_u64s_f64s(self.1), field);
+        let inverse = simd.sub_u64s(simd.splat_u64s((2 * BIAS) << 52), bits);
         let inverse = Self(simd, simd.transmute_f64s_u64s(inverse));
         // As numbers, fields are in the order of their size, and one below zero has a sign.
-        let [least, most] = [1, 2 * BIAS - 1].map(|n| self.same(f64::from_bits(n << 52)));
+        let least = self.same(f64::from_bits(1 << 52));
+        let most = self.same(f64::from_bits((2 * BIAS - 1) << 52));
         inverse.max(least).min(most)
     }
 }
@@ -267,14 +271,13 @@ impl<L: Lanes> Vec3<L> {
 
     #[inline(always)]
     pub(crate) fn mapped(self, m: &DMat3) -> Self {
-        let like = self.x;
-        let row = |x: f64, y: f64, z: f64| {
-            (like.same(x) * self.x + like.same(y) * self.y) + like.same(z) * self.z
-        };
         Self {
-            x: row(m.x_axis.x, m.y_axis.x, m.z_axis.x),
-            y: row(m.x_axis.y, m.y_axis.y, m.z_axis.y),
-            z: row(m.x_axis.z, m.y_axis.z, m.z_axis.z),
+            x: Self::same(self.x, DVec3::new(m.x_axis.x, m.y_axis.x, m.z_axis.x))
+                .dot(self),
+            y: Self::same(self.x, DVec3::new(m.x_axis.y, m.y_axis.y, m.z_axis.y))
+                .dot(self),
+            z: Self::same(self.x, DVec3::new(m.x_axis.z, m.y_axis.z, m.z_axis.z))
+                .dot(self),
         }
     }
 }

@@ -72,6 +72,7 @@ mod angle;
 mod bvh;
 mod census;
 mod color;
+mod fan;
 mod lanes;
 pub mod measure;
 mod mesh;

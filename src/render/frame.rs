@@ -5,10 +5,10 @@ use std::ops::Range;
 use super::{View, chunks};
 use crate::progress::Progress;
 use crate::ray::{Crossing, Ray, Sense};
-use crate::scene::Scene;
+use crate::scene::{SIDE, Scene, Tile};
 
 /// The side of the square tiles in which frames are traced and stored.
-pub(super) const TILE: u32 = 32;
+pub(super) const TILE: u32 = SIDE as u32;
 const TILE_AREA: usize = (TILE * TILE) as usize;
 
 /// The first crossing of one ray through each pixel, in 16 bytes a pixel.
@@ -62,18 +62,21 @@ pub(super) fn trace_rows(
     chunks::for_each(
         &mut hits,
         TILE_AREA,
-        || scene.tracer(),
+        || scene.tile_tracer(),
         |tracer, index, tile| {
             let [columns, rows] = frame.tile(index);
-            let rays =
-                u64::from(columns.end - columns.start) * u64::from(rows.end - rows.start);
-            for y in rows {
-                for x in columns.clone() {
-                    tile[place_in_tile(x, y)] =
-                        Packed::new(tracer.first_hit(&frame.ray(x, y)));
-                }
-            }
-            progress(rays);
+            let size = [columns.len(), rows.len()];
+            #[expect(clippy::cast_possible_truncation, reason = "tiles are small")]
+            let at = |i: usize, j: usize| {
+                let [x, y] =
+                    frame.in_view(columns.start + i as u32, rows.start + j as u32);
+                view.in_fan(x, y)
+            };
+            let rays = Tile { fan: view.fan(), size, at: &at };
+            tracer.first_hits(&rays, |i, j, hit| {
+                tile[j * TILE as usize + i] = Packed::new(hit);
+            });
+            progress(size[0] as u64 * size[1] as u64);
         },
     );
     frame.hits = hits;
@@ -93,8 +96,14 @@ impl Frame {
 
     /// The ray through pixel (x, y), counted from the upper left from zero.
     pub fn ray(&self, x: u32, y: u32) -> Ray {
+        let [x, y] = self.in_view(x, y);
+        self.view.ray(x, y)
+    }
+
+    /// Where in the view the ray through a pixel is.
+    fn in_view(&self, x: u32, y: u32) -> [f64; 2] {
         let (column, row) = (f64::from(x), f64::from(y) + f64::from(self.rows.start));
-        self.view.ray(column + self.offset[0], row + self.offset[1])
+        [column + self.offset[0], row + self.offset[1]]
     }
 
     /// Where the ray through pixel (x, y) first crosses the boundary of the solid; none

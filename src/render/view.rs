@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::camera::{Camera, Projection};
 use crate::aabb::Aabb;
+use crate::fan::{Fan, Linear};
 use crate::ray::Ray;
 
 /// A camera with a picture in front of it: one ray for each place in the picture.
@@ -28,18 +29,7 @@ use crate::ray::Ray;
 pub struct View {
     size: [u32; 2],
     axes: [DVec3; 3],
-    origin: Plane,
-    dir: Plane,
-}
-
-/// A vector that depends linearly on a place in the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Plane {
-    middle: DVec3,
-    /// What one pixel to the right adds.
-    right: DVec3,
-    /// What one pixel up adds.
-    up: DVec3,
+    fan: Fan,
 }
 
 impl View {
@@ -48,20 +38,22 @@ impl View {
         let eye = camera.center - camera.distance * forward;
         let half_height = (0.5 * Camera::FIELD_OF_VIEW_DEG).to_radians().tan();
         let pixel = half_height / (0.5 * f64::from(size[1].max(1)));
-        let constant = |middle| Plane { middle, right: DVec3::ZERO, up: DVec3::ZERO };
         let (origin, dir) = match camera.projection {
             Projection::Perspective => (
-                constant(eye),
-                Plane { middle: forward, right: pixel * right, up: pixel * up },
+                Linear::constant(eye),
+                Linear { middle: forward, right: pixel * right, up: pixel * up },
             ),
             Projection::Orthographic => {
                 let start = start_depth(camera, eye, forward, bounds);
                 let step = camera.distance * pixel;
                 let middle = eye + start * forward;
-                (Plane { middle, right: step * right, up: step * up }, constant(forward))
+                (
+                    Linear { middle, right: step * right, up: step * up },
+                    Linear::constant(forward),
+                )
             }
         };
-        Self { size, axes, origin, dir }
+        Self { size, axes, fan: Fan { origin, dir } }
     }
 
     /// Width and height in pixels.
@@ -80,15 +72,19 @@ impl View {
     /// A camera without finite numbers makes rays that are not
     /// [valid](Ray::is_valid), which meet nothing.
     pub fn ray(&self, x: f64, y: f64) -> Ray {
-        let [width, height] = self.size.map(f64::from);
-        let (right, up) = (x - 0.5 * width, 0.5 * height - y);
-        Ray::new(self.origin.at(right, up), self.dir.at(right, up))
+        let [right, up] = self.in_fan(x, y);
+        self.fan.ray(right, up)
     }
-}
 
-impl Plane {
-    fn at(&self, right: f64, up: f64) -> DVec3 {
-        self.middle + right * self.right + up * self.up
+    /// All rays of the picture.
+    pub(super) fn fan(&self) -> &Fan {
+        &self.fan
+    }
+
+    /// Where in the fan a place in the picture is.
+    pub(super) fn in_fan(&self, x: f64, y: f64) -> [f64; 2] {
+        let [width, height] = self.size.map(f64::from);
+        [x - 0.5 * width, 0.5 * height - y]
     }
 }
 

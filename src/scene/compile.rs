@@ -527,6 +527,7 @@ impl Compiler {
             places: self.places,
             subtracted: self.subtracted,
             part_list: self.part_list,
+            clipped,
             hierarchy,
             welds,
         })

@@ -1,5 +1,6 @@
 //! Compiled scenes: flat, checked, never changed, shared between threads.
 
+mod beam;
 mod certainty;
 mod classify;
 mod compile;
@@ -24,6 +25,7 @@ use crate::color::Color;
 use crate::ray::{Crossing, Ray, Sense};
 use crate::shape::{Line, Shape, Spot, inverse_power_of_two};
 use crate::solid::{Place, Solid};
+pub(crate) use beam::{SIDE, Tile, TileTracer};
 pub use classify::Membership;
 pub use compile::{CompileError, LeafName};
 pub use options::CompileOptions;
@@ -56,6 +58,8 @@ pub struct Scene {
     /// Which leaves take material away, as people see it.
     subtracted: Vec<bool>,
     part_list: Vec<Part>,
+    /// The boxes of the leaves within the solid's reach.
+    clipped: Vec<Aabb>,
     hierarchy: Bvh,
     welds: Vec<Weld>,
 }
@@ -143,6 +147,11 @@ impl Scene {
     /// Makes a tracer for the occasion; for many points use [`Tracer::contains`].
     pub fn contains(&self, point: DVec3) -> bool {
         self.tracer().contains(point)
+    }
+
+    /// Scratch memory for many rays at once, one for each thread.
+    pub(crate) fn tile_tracer(&self) -> TileTracer<'_> {
+        TileTracer::new(self)
     }
 
     /// Scratch memory for queries, one for each thread.
@@ -238,6 +247,7 @@ mod tests {
             Scene::compile(&Solid::boolean(crate::Op::Union, balls)).expect("balls");
         let bytes = scene.hierarchy.bytes()
             + size_of_val(&*scene.literals)
+            + size_of_val(&*scene.clipped)
             + size_of_val(&*scene.shapes)
             + size_of_val(&*scene.parts)
             + size_of_val(&*scene.places);

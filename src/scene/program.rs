@@ -139,6 +139,16 @@ impl Program {
         counts[0] >= self.nodes[0].need
     }
 
+    /// Whether a node is true.
+    pub(crate) fn is_true(&self, counts: &[u32], node: u32) -> bool {
+        counts[node as usize] >= self.nodes[node as usize].need
+    }
+
+    /// The node above one that is not the root.
+    pub(crate) fn parent(&self, node: u32) -> u32 {
+        self.nodes[node as usize].parent
+    }
+
     /// Tells the nodes above a leaf that it has become true or false.
     pub(crate) fn toggle(&self, counts: &mut [u32], parent: u32, mut value: bool) {
         let mut at = parent;

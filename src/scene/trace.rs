@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::Scene;
 use crate::ray::{Crossing, Ray, Sense, Span};
-use crate::shape::{Event, Line, Sink};
+use crate::shape::{ALL, Event, Line, Sink};
 
 /// Scratch memory for queries on a scene; make one for each thread.
 ///
@@ -26,6 +26,17 @@ pub struct Tracer<'a> {
     pub(super) spans: Vec<Span>,
     /// How many spans and gaps of the ray asked last have both ends at the same number.
     pub(super) collapsed: u64,
+}
+
+/// What the solid does in a part of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Change {
+    /// Nothing.
+    None,
+    /// This first.
+    First(Crossing),
+    /// Two things at one `t` of the ray.
+    Collapsed,
 }
 
 /// The direction in which points are asked about, (√0.3, √0.1, √0.6): along no axis,
@@ -90,8 +101,7 @@ impl<'a> Tracer<'a> {
         let Self { scene, events, .. } = self;
         events.clear();
         scene.hierarchy.crossed(&line.slabs(&scene.hierarchy.bounds()), |leaf| {
-            let surface = scene.shapes[leaf as usize].surface();
-            surface.crossings(line, &mut Sink { events, leaf });
+            scene.shapes[leaf as usize].crossings(ALL, line, &mut Sink { events, leaf });
         });
         events.sort_unstable_by(in_order);
     }
@@ -102,18 +112,9 @@ impl<'a> Tracer<'a> {
         let mut entered: Option<Crossing> = None;
         let mut from = 0;
         while from < self.events.len() {
-            let t = self.events[from].t;
-            #[expect(clippy::float_cmp, reason = "one place is one number")]
-            let group =
-                self.events[from..].iter().take_while(|event| event.t == t).count();
-            let before = self.root();
-            self.note_followers(from..from + group, before);
-            self.toggle(from..from + group);
-            let after = self.root();
-            if before != after {
-                let sense = if after { Sense::Enter } else { Sense::Exit };
-                let event = self.owner(from..from + group, after);
-                let Event { leaf, face, .. } = event;
+            let group = self.group(from);
+            from = group.end;
+            if let Some((Event { t, leaf, face, .. }, sense)) = self.pass(group) {
                 let crossing = Crossing { t: line.on_ray(t), leaf, face, sense };
                 match entered.take() {
                     None => entered = Some(crossing),
@@ -123,10 +124,80 @@ impl<'a> Tracer<'a> {
                     Some(_) => self.collapsed += 1,
                 }
             }
-            from += group;
         }
         debug_assert!(entered.is_none(), "every leaf is left as often as it is entered");
         debug_assert!(self.counts == self.scene.far_away, "the counters are back");
+    }
+
+    /// The first change of the solid whose place on the ray is in a range, if only these
+    /// leaves, and some of their faces, need to be looked at, and the counters of the others are
+    /// given.
+    pub(super) fn first_change(
+        &mut self,
+        counts: &mut Vec<u32>,
+        line: &Line,
+        leaves: impl Iterator<Item = (u32, u32)>,
+        [low, high]: [f64; 2],
+    ) -> Change {
+        self.events.clear();
+        for (leaf, faces) in leaves {
+            let shape = &self.scene.shapes[leaf as usize];
+            shape.crossings(faces, line, &mut Sink { events: &mut self.events, leaf });
+        }
+        self.events.sort_unstable_by(in_order);
+        std::mem::swap(&mut self.counts, counts);
+        let mut found = Change::None;
+        let mut from = 0;
+        while from < self.events.len() {
+            let t = self.events[from].t;
+            let place = line.on_ray(t);
+            if found == Change::None && place >= high {
+                break;
+            }
+            let group = self.group(from);
+            let change = self.pass(group.clone());
+            from = group.end;
+            let Some((Event { leaf, face, .. }, sense)) = change else {
+                continue;
+            };
+            match found {
+                Change::None if place >= low => {
+                    found = Change::First(Crossing { t: place, leaf, face, sense });
+                }
+                Change::None => {}
+                Change::First(crossing) => {
+                    if place <= crossing.t {
+                        found = Change::Collapsed;
+                    }
+                    break;
+                }
+                Change::Collapsed => break,
+            }
+        }
+        self.pass_on_from(from);
+        std::mem::swap(&mut self.counts, counts);
+        found
+    }
+
+    /// The events at the same place as one.
+    fn group(&self, from: usize) -> std::ops::Range<usize> {
+        let t = self.events[from].t;
+        #[expect(clippy::float_cmp, reason = "one place is one number")]
+        let group = self.events[from..].iter().take_while(|event| event.t == t).count();
+        from..from + group
+    }
+
+    /// Toggles the leaves of the events at one place; says what the solid does there, and to which
+    /// event that is put down.
+    fn pass(&mut self, group: std::ops::Range<usize>) -> Option<(Event, Sense)> {
+        let before = self.root();
+        self.note_followers(group.clone(), before);
+        self.toggle(group.clone());
+        let after = self.root();
+        (before != after).then(|| {
+            let sense = if after { Sense::Enter } else { Sense::Exit };
+            (self.owner(group, after), sense)
+        })
     }
 
     /// Adds a span behind the others, or to the last one if there is no number between

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
+use super::Surface;
 use super::doubt::{Local, Spot};
-use super::line::{Line, Rays};
+use super::line::Rays;
 use super::place::Frame;
 use super::plane::Plane;
 use super::stretch::Stretch;
-use super::{ALL, Sink, Surface};
 use crate::aabb::Aabb;
 use crate::lanes::Lanes;
 
@@ -42,10 +42,6 @@ impl Cuboid {
 }
 
 impl Surface for Cuboid {
-    fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
-        sink.stretch(&self.stretch(ALL, &line.into()));
-    }
-
     fn normal(&self, _point: DVec3, face: u32) -> DVec3 {
         self.planes[face as usize % 6].outward()
     }

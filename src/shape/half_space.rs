@@ -3,11 +3,11 @@
 use glam::DVec3;
 
 use super::doubt::{Local, Spot};
-use super::line::{Line, Rays};
+use super::line::Rays;
 use super::place::Frame;
 use super::plane::Plane;
 use super::stretch::Stretch;
-use super::{ALL, Sink, Surface};
+use super::{ALL, Surface};
 use crate::aabb::Aabb;
 use crate::lanes::Lanes;
 
@@ -42,10 +42,6 @@ impl HalfSpace {
 }
 
 impl Surface for HalfSpace {
-    fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
-        sink.stretch(&self.stretch(&line.into()));
-    }
-
     fn normal(&self, _point: DVec3, _face: u32) -> DVec3 {
         self.planes[0].outward()
     }

@@ -41,16 +41,8 @@ impl Line {
         if !bounds.is_bounded() {
             return None;
         }
-        let (lines, met) = Lines::new(ray.origin.into(), ray.dir.into(), bounds);
-        let Lines { rays: Rays { origin, rest, dir }, offset, scale } = lines;
-        let line = Self {
-            origin: origin.into(),
-            rest: rest.into(),
-            dir: dir.into(),
-            offset,
-            scale,
-        };
-        met.then_some(line)
+        let (line, met) = Lines::new(ray.origin.into(), ray.dir.into(), bounds);
+        met.then(|| line.into())
     }
 
     /// A place on this line as a place on the ray.
@@ -92,6 +84,14 @@ pub(crate) struct Lines<L> {
     pub(crate) scale: L,
 }
 
+impl From<Lines<f64>> for Line {
+    fn from(lines: Lines<f64>) -> Self {
+        let Lines { rays: Rays { origin, rest, dir }, offset, scale } = lines;
+        let [origin, rest, dir] = [origin, rest, dir].map(DVec3::from);
+        Self { origin, rest, dir, offset, scale }
+    }
+}
+
 impl<L: Lanes> Lines<L> {
     /// Rays as lines, and which of them are valid and meet the bounds, which are bounded.
     #[inline(always)]
@@ -124,18 +124,21 @@ fn within<L: Lanes>(origin: Vec3<L>, dir: Vec3<L>, bounds: &Aabb) -> [L; 2] {
     let like = origin.x;
     let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
     let pad = like.same(8.0 * f64::EPSILON) * (like.same(reach) + origin.largest());
-    let along = |low: f64, high: f64, origin: L, dir: L| {
-        let most = like.same(f64::MAX);
-        let inverse = (like.same(1.0) / dir).min(most).max(-most);
-        let low = ((like.same(low) - pad) - origin) * inverse;
-        let high = ((like.same(high) + pad) - origin) * inverse;
-        [low.min(high), low.max(high)]
-    };
     let Aabb { min, max } = *bounds;
-    let [x0, x1] = along(min.x, max.x, origin.x, dir.x);
-    let [y0, y1] = along(min.y, max.y, origin.y, dir.y);
-    let [z0, z1] = along(min.z, max.z, origin.z, dir.z);
+    let [x0, x1] = within_slab(origin.x, dir.x, [min.x, max.x], pad);
+    let [y0, y1] = within_slab(origin.y, dir.y, [min.y, max.y], pad);
+    let [z0, z1] = within_slab(origin.z, dir.z, [min.z, max.z], pad);
     [x0.max(y0).max(z0), x1.min(y1).min(z1)]
+}
+
+/// The same on one axis.
+#[inline(always)]
+fn within_slab<L: Lanes>(origin: L, dir: L, slab: [f64; 2], pad: L) -> [L; 2] {
+    let most = origin.same(f64::MAX);
+    let inverse = (origin.same(1.0) / dir).min(most).max(-most);
+    let low = ((origin.same(slab[0]) - pad) - origin) * inverse;
+    let high = ((origin.same(slab[1]) + pad) - origin) * inverse;
+    [low.min(high), low.max(high)]
 }
 
 /// The point `origin + steps · dir` as a sum of two, the second smaller than the rounding of
@@ -143,25 +146,30 @@ fn within<L: Lanes>(origin: Vec3<L>, dir: Vec3<L>, bounds: &Aabb) -> [L; 2] {
 /// Precision", Numerische Mathematik 18, 1971; the sum is that of D. E. Knuth).
 #[inline(always)]
 fn advanced<L: Lanes>(origin: Vec3<L>, steps: L, dir: Vec3<L>) -> [Vec3<L>; 2] {
-    let [steps_high, steps_low] = halves(steps);
-    let along = |origin: L, dir: L| {
-        let way = steps * dir;
-        let [a, b] = halves(dir);
-        let lost_way =
-            ((steps_high * a - way) + steps_high * b + steps_low * a) + steps_low * b;
-        let sum = origin + way;
-        let back = sum - origin;
-        let lost = (origin - (sum - back)) + (way - back);
-        [sum, lost + lost_way]
-    };
-    let [x, x_rest] = along(origin.x, dir.x);
-    let [y, y_rest] = along(origin.y, dir.y);
-    let [z, z_rest] = along(origin.z, dir.z);
+    let [x, x_rest] = advanced_on_axis(origin.x, steps, dir.x);
+    let [y, y_rest] = advanced_on_axis(origin.y, steps, dir.y);
+    let [z, z_rest] = advanced_on_axis(origin.z, steps, dir.z);
     // Numbers too large to be split have no rest.
-    let zero = steps.same(0.0);
+    let none = Vec3::same(steps, DVec3::ZERO);
     let has_rest = x_rest.is_finite() & y_rest.is_finite() & z_rest.is_finite();
-    let rest = |r: L| L::select(has_rest, r, zero);
-    [Vec3 { x, y, z }, Vec3 { x: rest(x_rest), y: rest(y_rest), z: rest(z_rest) }]
+    let rest = Vec3 {
+        x: L::select(has_rest, x_rest, none.x),
+        y: L::select(has_rest, y_rest, none.y),
+        z: L::select(has_rest, z_rest, none.z),
+    };
+    [Vec3 { x, y, z }, rest]
+}
+
+/// The same for one coordinate.
+#[inline(always)]
+fn advanced_on_axis<L: Lanes>(origin: L, steps: L, dir: L) -> [L; 2] {
+    let way = steps * dir;
+    let ([high, low], [a, b]) = (halves(steps), halves(dir));
+    let lost_way = ((high * a - way) + high * b + low * a) + low * b;
+    let sum = origin + way;
+    let back = sum - origin;
+    let lost = (origin - (sum - back)) + (way - back);
+    [sum, lost + lost_way]
 }
 
 /// Numbers as sums of two with half the digits.

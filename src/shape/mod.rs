@@ -3,8 +3,9 @@
 //! # To add a primitive
 //!
 //! 1. describe it in [`Primitive`] (`primitive.rs`), with its name and the check of its sizes;
-//! 2. write its file here, with the three methods of `Surface` and its bounds;
-//! 3. add it to `Shape` and the three matches below;
+//! 2. write its file here, with the methods of `Surface`, where lines are inside, and its
+//!    bounds;
+//! 3. add it to `Shape` and the matches below;
 //! 4. give it a maker in `solid.rs`;
 //! 5. and a keyword in the reader, if a format has one.
 
@@ -18,6 +19,7 @@ mod plane;
 mod polyhedron;
 mod primitive;
 mod quadric;
+mod region;
 mod stretch;
 mod wall;
 #[cfg(test)]
@@ -33,22 +35,19 @@ pub(crate) use chain::Chain;
 use cuboid::Cuboid;
 pub(crate) use doubt::{Local, Spot, U};
 use half_space::HalfSpace;
-pub(crate) use line::{Line, inverse_power_of_two};
+pub(crate) use line::{Line, Lines, Rays, inverse_power_of_two};
 use place::Frame;
 pub(crate) use place::inverse;
 pub(crate) use plane::Plane;
 pub(crate) use polyhedron::{IndexedMesh, Polyhedron};
 pub use primitive::{BadParameter, Primitive, Profile};
 use quadric::Quadric;
-use stretch::Stretch;
+pub(crate) use region::{Region, Side};
+pub(crate) use stretch::Stretch;
 pub(crate) use wall::Wall;
 
 /// What a leaf owes.
 pub(crate) trait Surface {
-    /// Hands over all crossings with a line, in any order: as many in as out, infinite ones
-    /// where the line starts or ends inside.
-    fn crossings(&self, line: &Line, sink: &mut Sink<'_>);
-
     /// A normal of any length, outward, on a face at a point.
     fn normal(&self, point: DVec3, face: u32) -> DVec3;
 
@@ -218,6 +217,22 @@ impl Shape {
                 Some(planes) if face > 0 => of_plane(&planes[(face as usize - 1) % 2]),
                 _ => (Identity::Wall(leaf.wall.numbers()), false),
             },
+        }
+    }
+
+    /// Hands over all crossings with a line, in any order: as many in as out, infinite ones
+    /// where the line starts or ends inside. Of a leaf with few faces those are taken for far
+    /// away whose bits are zero.
+    pub(crate) fn crossings(&self, faces: u32, line: &Line, sink: &mut Sink<'_>) {
+        match self {
+            Self::Cuboid(leaf) => sink.stretch(&leaf.stretch(faces, &line.into())),
+            Self::HalfSpace(leaf) => sink.stretch(&leaf.stretch(&line.into())),
+            Self::Polyhedron(leaf) => leaf.crossings(line, sink),
+            Self::Quadric(leaf) => {
+                let stretches = leaf.stretches(faces, &line.into());
+                let slots = leaf.slots(faces);
+                stretches[..slots].iter().for_each(|stretch| sink.stretch(stretch));
+            }
         }
     }
 

@@ -96,7 +96,7 @@ impl Plane {
     fn inside<L: Lanes>(&self, rays: &Rays<L>) -> [L; 2] {
         let Rays { origin, rest, dir } = *rays;
         let like = origin.x;
-        let [never, always] = [f64::INFINITY, f64::NEG_INFINITY].map(|t| like.same(t));
+        let (never, always) = (like.same(f64::INFINITY), like.same(f64::NEG_INFINITY));
         let zero = like.same(0.0);
         let normal = Vec3::same(like, self.normal);
         let speed = normal.dot(dir);

@@ -103,8 +103,9 @@ impl Polyhedron {
     }
 }
 
-impl Surface for Polyhedron {
-    fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
+impl Polyhedron {
+    /// Hands over all crossings with a line.
+    pub(super) fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
         let origin = self.to_local.origin_of(line);
         let dir = self.to_local.direction(line.dir);
         let IndexedMesh { mesh, faces, scale } = &*self.mesh;
@@ -121,7 +122,9 @@ impl Surface for Polyhedron {
             }
         });
     }
+}
 
+impl Surface for Polyhedron {
     fn normal(&self, _point: DVec3, face: u32) -> DVec3 {
         let [a, b, c] = self.mesh.mesh.corners(face as usize);
         self.to_local.normal_to_world(level(b - a).cross(level(c - a)))

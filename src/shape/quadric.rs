@@ -2,14 +2,14 @@
 
 use glam::DVec3;
 
+use super::Surface;
 use super::doubt::{Local, Spot};
-use super::line::{Line, Rays, inverse_power_of_two};
+use super::line::{Rays, inverse_power_of_two};
 use super::place::Frame;
 use super::plane::Plane;
 use super::primitive::Profile;
 use super::stretch::Stretch;
 use super::wall::Wall;
-use super::{ALL, Sink, Surface};
 use crate::aabb::Aabb;
 use crate::lanes::Lanes;
 
@@ -40,15 +40,18 @@ impl Quadric {
         Self { wall, planes }
     }
 
-    /// Where lines are inside, as far as some of the faces say. There is no second stretch
-    /// where the profile [cannot be left twice](Profile::can_be_left_twice).
+    /// Where lines are inside, as far as some of the faces say. Only the
+    /// first [slots](Self::slots) count.
     #[inline(always)]
     pub(crate) fn stretches<L: Lanes>(
         &self,
         faces: u32,
         rays: &Rays<L>,
     ) -> [Stretch<L>; 2] {
-        let planes = self.planes.as_ref().map_or(&[][..], |planes| planes);
+        let planes = match &self.planes {
+            Some(planes) => &planes[..],
+            None => &[],
+        };
         let mut between = Plane::stretch(planes, faces >> 1, rays);
         // The faces of the planes come after that of the wall.
         let one = between.enter_face.same(1.0);
@@ -57,7 +60,8 @@ impl Quadric {
         if faces & 1 == 0 {
             return [between; 2];
         }
-        self.wall.inside(rays).map(|[from, to]| between.cut(from, to, 0))
+        let [[a, b], [c, d]] = self.wall.inside(rays);
+        [between.cut(a, b, 0), between.cut(c, d, 0)]
     }
 
     pub(crate) fn bounds(frame: &Frame, profile: Profile, bottom: f64, top: f64) -> Aabb {
@@ -93,20 +97,17 @@ impl Quadric {
         profile.largest_radius(bottom, top).hypot(bottom.abs().max(top.abs()))
     }
 
+    /// How many of its stretches a line can have, as far as some of the faces say.
+    pub(crate) fn slots(&self, faces: u32) -> usize {
+        if faces & 1 == 1 && self.wall.profile.can_be_left_twice() { 2 } else { 1 }
+    }
+
     pub(crate) fn kind(&self) -> &'static str {
         self.wall.profile.name()
     }
 }
 
 impl Surface for Quadric {
-    fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
-        let [first, second] = self.stretches(ALL, &line.into());
-        sink.stretch(&first);
-        if self.wall.profile.can_be_left_twice() {
-            sink.stretch(&second);
-        }
-    }
-
     fn normal(&self, point: DVec3, face: u32) -> DVec3 {
         match &self.planes {
             Some(planes) if face > 0 => planes[(face as usize - 1) % 2].outward(),

@@ -62,7 +62,7 @@ impl Wall {
         let Course { a, step, .. } = course;
         let c = self.profile.value(p);
         let like = a;
-        let [never, always] = [f64::INFINITY, f64::NEG_INFINITY].map(|t| like.same(t));
+        let (never, always) = (like.same(f64::INFINITY), like.same(f64::NEG_INFINITY));
         let zero = like.same(0.0);
         let discriminant = b * b - a * c;
         let root = discriminant.sqrt();
@@ -395,20 +395,26 @@ impl Profile {
     /// `x² + y² − ρ(z)` at points, as a product where it is a difference of squares.
     #[inline(always)]
     fn value<L: Lanes>(&self, p: Vec3<L>) -> L {
-        let same = |x: f64| p.x.same(x);
+        let like = p.x;
         match *self {
-            Self::Ball { radius } => difference_of_squares(p.length(), same(radius)),
-            Self::Cylinder { radius } => difference_of_squares(p.across(), same(radius)),
-            Self::Cone { radius, slope } => {
-                difference_of_squares(p.across(), same(radius) + same(slope) * p.z)
+            Self::Ball { radius } => difference_of_squares(p.length(), like.same(radius)),
+            Self::Cylinder { radius } => {
+                difference_of_squares(p.across(), like.same(radius))
             }
-            Self::Paraboloid { scale } => (p.x * p.x + p.y * p.y) - same(scale) * p.z,
-            Self::OneSheet { waist, slope } => {
-                difference_of_squares(p.across(), hypot(same(waist), same(slope) * p.z))
+            Self::Cone { radius, slope } => difference_of_squares(
+                p.across(),
+                like.same(radius) + like.same(slope) * p.z,
+            ),
+            Self::Paraboloid { scale } => {
+                (p.x * p.x + p.y * p.y) - like.same(scale) * p.z
             }
+            Self::OneSheet { waist, slope } => difference_of_squares(
+                p.across(),
+                hypot(like.same(waist), like.same(slope) * p.z),
+            ),
             Self::TwoSheets { vertex, slope } => difference_of_squares(
-                hypot(p.across(), same(slope * vertex)),
-                same(slope) * p.z,
+                hypot(p.across(), like.same(slope * vertex)),
+                like.same(slope) * p.z,
             ),
         }
     }
@@ -446,16 +452,16 @@ impl Profile {
     /// Half the gradient of [`Profile::value`].
     #[inline(always)]
     fn half_gradient<L: Lanes>(&self, p: Vec3<L>) -> Vec3<L> {
-        let same = |x: f64| p.x.same(x);
+        let like = p.x;
         let z = match *self {
             Self::Ball { .. } => p.z,
-            Self::Cylinder { .. } => same(0.0),
+            Self::Cylinder { .. } => like.same(0.0),
             Self::Cone { radius, slope } => {
-                same(-slope) * (same(radius) + same(slope) * p.z)
+                like.same(-slope) * (like.same(radius) + like.same(slope) * p.z)
             }
-            Self::Paraboloid { scale } => same(-0.5 * scale),
+            Self::Paraboloid { scale } => like.same(-0.5 * scale),
             Self::OneSheet { slope, .. } | Self::TwoSheets { slope, .. } => {
-                same(-slope * slope) * p.z
+                like.same(-slope * slope) * p.z
             }
         };
         Vec3 { z, ..p }

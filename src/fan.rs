@@ -1,0 +1,52 @@
+//! Rays in two dimensions of parameters: those of a camera, or of an integral.
+
+use glam::DVec3;
+
+use crate::ray::Ray;
+
+/// Rays whose origins and directions depend linearly on two numbers: how far to the right and
+/// how far up. Either the origins or the directions differ, always the same way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Fan {
+    pub(crate) origin: Linear,
+    pub(crate) dir: Linear,
+}
+
+/// A vector that depends linearly on two numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Linear {
+    pub(crate) middle: DVec3,
+    /// What one to the right adds.
+    pub(crate) right: DVec3,
+    /// What one up adds.
+    pub(crate) up: DVec3,
+}
+
+impl Fan {
+    /// The ray at a place.
+    pub(crate) fn ray(&self, right: f64, up: f64) -> Ray {
+        Ray::new(self.origin.at(right, up), self.dir.at(right, up))
+    }
+
+    /// Whether all rays run the same way.
+    pub(crate) fn is_parallel(&self) -> bool {
+        self.dir.right == DVec3::ZERO && self.dir.up == DVec3::ZERO
+    }
+}
+
+impl Linear {
+    /// The same vector everywhere.
+    pub(crate) const fn constant(middle: DVec3) -> Self {
+        Self { middle, right: DVec3::ZERO, up: DVec3::ZERO }
+    }
+
+    pub(crate) fn at(&self, right: f64, up: f64) -> DVec3 {
+        self.middle + right * self.right + up * self.up
+    }
+
+    /// At least the largest coordinate between the middle and there.
+    pub(crate) fn largest(&self, right: f64, up: f64) -> f64 {
+        let Self { middle, right: r, up: u } = *self;
+        (middle.abs() + (right * r).abs() + (up * u).abs()).max_element()
+    }
+}
