@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 
-use super::{Chain, Event, IndexedMesh, Line, Shape, Sink};
+use super::{ALL, Chain, Event, IndexedMesh, Line, Shape, Sink};
 use crate::aabb::Aabb;
 use crate::mesh::Mesh;
 use crate::ray::{Ray, Sense};
@@ -53,7 +53,7 @@ impl Case {
     fn crossings(&self, ray: &Ray, events: &mut Vec<Event>) -> Option<Line> {
         events.clear();
         let line = Line::new(ray, &self.bounds)?;
-        self.shape.surface().crossings(&line, &mut Sink { events, leaf: 0 });
+        self.shape.crossings(ALL, &line, &mut Sink { events, leaf: 0 });
         Some(line)
     }
 

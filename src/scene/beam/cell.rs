@@ -7,7 +7,7 @@ use pulp::Arch;
 
 use super::known::{Known, Place};
 use super::packet::{BLOCK, Block, Slot, slots_of};
-use super::walk::{Candidate, FEW, Outcome, Table, first};
+use super::walk::{Candidate, Ends, FEW, NO_ENDS, Outcome, Table, first};
 use crate::fan::Fan;
 use crate::ray::{Crossing, Ray, Sense};
 use crate::scene::trace::Change;
@@ -53,6 +53,8 @@ pub(crate) struct TileTracer<'a> {
     blocks: Vec<Block>,
     /// Which rays of each block are to be traced still.
     open: [u64; BLOCKS],
+    /// Which blocks have lines.
+    has_lines: u32,
     hits: Vec<Option<Crossing>>,
     /// The leaves that matter in the cells that are being looked at, one list on the other.
     candidates: Vec<Candidate>,
@@ -60,6 +62,7 @@ pub(crate) struct TileTracer<'a> {
     sides: Vec<Side>,
     /// With which of the candidates each slot belongs together.
     slots: Vec<(Slot, u32)>,
+    ends: Ends,
 }
 
 /// How rays of a tile lie in space.
@@ -91,10 +94,12 @@ impl<'a> TileTracer<'a> {
             many: scene.tracer(),
             blocks: vec![Block::EMPTY; BLOCKS],
             open: [0; BLOCKS],
+            has_lines: 0,
             hits: vec![None; BLOCKS * BLOCK],
             candidates: Vec::new(),
             sides: Vec::new(),
             slots: Vec::new(),
+            ends: NO_ENDS,
         }
     }
 
@@ -105,8 +110,15 @@ impl<'a> TileTracer<'a> {
         mut found: impl FnMut(usize, usize, Option<Crossing>),
     ) {
         self.hits.fill(None);
+        self.has_lines = 0;
+        self.open = [0; BLOCKS];
+        for j in 0..tile.size[1] {
+            for i in 0..tile.size[0] {
+                let place = place(i, j);
+                self.open[place / BLOCK] |= 1 << (place % BLOCK);
+            }
+        }
         if self.scene.bounds.is_bounded() {
-            self.make_lines(tile);
             self.survey(&Sight::new(tile, self.scene));
         }
         for j in 0..tile.size[1] {
@@ -116,22 +128,16 @@ impl<'a> TileTracer<'a> {
         }
     }
 
-    /// Makes lines of the tile's rays.
-    fn make_lines(&mut self, tile: &Tile<'_>) {
-        let mut wanted = [0_u64; BLOCKS];
-        for j in 0..tile.size[1] {
-            for i in 0..tile.size[0] {
-                let place = place(i, j);
-                wanted[place / BLOCK] |= 1 << (place % BLOCK);
-                self.blocks[place / BLOCK].set_ray(place % BLOCK, &tile.ray(i, j));
+    /// Makes lines of the rays of a block when they are first needed.
+    fn make_lines(&mut self, sight: &Sight<'_>, block: usize) {
+        if self.has_lines & 1 << block == 0 {
+            self.has_lines |= 1 << block;
+            let wanted = self.open[block];
+            for ray in (0..BLOCK).filter(|ray| wanted >> ray & 1 == 1) {
+                self.blocks[block].set_ray(ray, &sight.ray(block, ray));
             }
-        }
-        for (i, block) in self.blocks.iter_mut().enumerate() {
-            self.open[i] = 0;
-            if wanted[i] != 0 {
-                self.open[i] =
-                    wanted[i] & block.make_lines(self.arch, &self.scene.bounds);
-            }
+            let valid = self.blocks[block].make_lines(self.arch, &self.scene.bounds);
+            self.open[block] &= valid;
         }
     }
 
@@ -235,20 +241,23 @@ impl<'a> TileTracer<'a> {
 
     /// Traces the rays of a block between two depths.
     fn trace(&mut self, sight: &Sight<'_>, cell: &Cell, list: Range<usize>) {
-        let has_table = list.len() <= FEW && self.fill_slots(cell.block, &list);
-        let table = has_table.then(|| self.table(&list));
+        self.make_lines(sight, cell.block);
+        let slots = if list.len() <= FEW { self.fill_slots(cell.block, &list) } else { None };
+        let table = slots.map(|slots| (self.table(&list), slots));
         let mut open = self.open[cell.block];
         while open != 0 {
             let ray = open.trailing_zeros() as usize;
             open &= open - 1;
             let block = &self.blocks[cell.block];
-            let outcome = table.map_or(Outcome::Tied, |table| {
-                first(table, &self.slots, ray, cell.depth, |t| block.on_ray(ray, t))
+            let outcome = table.map_or(Outcome::Tied, |(table, slots)| {
+                let slots = &self.slots[..slots];
+                let on_ray = |t| block.on_ray(ray, t);
+                first(table, slots, ray, cell.depth, on_ray, &mut self.ends)
             });
             let hit = match outcome {
                 Outcome::Nothing => continue,
                 Outcome::Crossed { t, end, after } => {
-                    let (slot, candidate) = &self.slots[end / 2];
+                    let (slot, candidate) = &self.slots[end as usize / 2];
                     let leaves = end % 2 == 1;
                     let face = if leaves { slot.exit_face } else { slot.enter_face }[ray];
                     Some(Crossing {
@@ -272,22 +281,22 @@ impl<'a> TileTracer<'a> {
         }
     }
 
-    /// Where the rays of a block are inside leaves; says whether all are such that a slot can
-    /// tell.
-    fn fill_slots(&mut self, block: usize, list: &Range<usize>) -> bool {
+    /// Where the rays of a block are inside leaves, and in how many slots that is; nothing if
+    /// slots cannot tell.
+    fn fill_slots(&mut self, block: usize, list: &Range<usize>) -> Option<usize> {
         let mut filled = 0;
         for (number, i) in (0..).zip(list.clone()) {
             let Candidate { leaf, faces } = self.candidates[i];
             let shape = &self.scene.shapes[leaf as usize];
             let needed = slots_of(shape, faces);
             if needed == 0 {
-                return false;
+                return None;
             }
             while self.slots.len() < filled + 2 {
                 self.slots.push((Slot::EMPTY, 0));
             }
             let [first, second] = &mut self.slots[filled..filled + 2] else {
-                return false;
+                return None;
             };
             first.1 = number;
             second.1 = number;
@@ -301,8 +310,7 @@ impl<'a> TileTracer<'a> {
             );
             filled += needed;
         }
-        self.slots.truncate(filled);
-        true
+        Some(filled)
     }
 
     fn table(&mut self, list: &Range<usize>) -> Table {

@@ -17,6 +17,8 @@
 mod cell;
 mod known;
 mod packet;
+#[cfg(test)]
+mod tests;
 mod walk;
 
 pub(crate) use cell::{SIDE, Tile, TileTracer};

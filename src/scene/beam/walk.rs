@@ -16,7 +16,7 @@ pub(super) enum Outcome {
     Nothing,
     /// It is first crossed at this place of the line, at the start (end 2 i) or the end (2 i + 1)
     /// of the stretch in slot i; after that it is inside or not.
-    Crossed { t: f64, end: usize, after: bool },
+    Crossed { t: f64, end: u32, after: bool },
     /// Stretches end at the same place.
     Tied,
     /// Two crossings are one number on the ray.
@@ -26,8 +26,11 @@ pub(super) enum Outcome {
 /// With at most this many leaves the solid is a table of their states.
 pub(super) const FEW: usize = 6;
 
-/// The largest number of ends that so few leaves have.
-const ENDS: usize = 4 * FEW;
+/// The ends of stretches: places, and which end of which slot (2 i or 2 i + 1). Each of so few
+/// leaves has at most four.
+pub(super) type Ends = [(f64, u32); 4 * FEW];
+
+pub(super) const NO_ENDS: Ends = [(0.0, 0); 4 * FEW];
 
 /// For each combination of being inside or outside of some leaves, whether the solid is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,16 +58,17 @@ impl Table {
     }
 }
 
-/// The first crossing whose place on the ray is in a range.
+/// The first crossing whose place on the ray is in a range. What was in `ends` does not matter.
 pub(super) fn first(
     table: Table,
     slots: &[(Slot, u32)],
     ray: usize,
     [low, high]: [f64; 2],
     on_ray: impl Fn(f64) -> f64,
+    ends: &mut Ends,
 ) -> Outcome {
-    let (mut ends, mut count) = ([(0.0, 0_usize); ENDS], 0);
-    for (i, (slot, _)) in slots.iter().enumerate() {
+    let mut count = 0;
+    for (i, (slot, _)) in (0..).zip(slots) {
         let (enter, exit) = (slot.enter[ray], slot.exit[ray]);
         if enter < exit {
             for end in [(enter, 2 * i), (exit, 2 * i + 1)] {
@@ -84,7 +88,7 @@ pub(super) fn first(
         let group = i;
         #[expect(clippy::float_cmp, reason = "one place is one number")]
         while let Some(&(_, end)) = ends.get(i).filter(|(other, _)| *other == t) {
-            state ^= 1 << slots[end / 2].1;
+            state ^= 1 << slots[end as usize / 2].1;
             i += 1;
         }
         let after = table.holds(state);
