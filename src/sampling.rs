@@ -30,6 +30,22 @@ impl Fibonacci {
         self.n
     }
 
+    /// The numbers of points whose first coordinate, not moved, is between two numbers on the
+    /// torus that are at most 1 apart; and of some more.
+    pub(crate) fn between(&self, from: f64, to: f64) -> impl Iterator<Item = u64> {
+        let n = self.n as f64;
+        let first = (from * n).floor() - 2.0;
+        let count = ((to - from) * n).ceil() + 5.0;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole numbers from 0 to n, which is below 2^53"
+        )]
+        let [first, count] = [first.rem_euclid(n), count.min(n)].map(|x| x as u64);
+        let n = self.n;
+        (first..first + count).map(move |i| i % n)
+    }
+
     /// Point `i`, moved by `shift` on the torus.
     pub(crate) fn point(&self, i: u64, shift: DVec2) -> DVec2 {
         let other = (i % self.n) * self.generator % self.n;

@@ -3,11 +3,10 @@
 use glam::DVec3;
 
 use super::estimate::Estimate;
-use super::lattice::{Beam, Round, Sampling, Tally, rounds, student};
+use super::lattice::{Beam, REPLICATES, Round, Sampling, Samples, Tally, rounds, student};
 use super::volume::{Chords, estimate, is_nothing};
 use crate::progress::Progress;
-use crate::ray::Ray;
-use crate::scene::{CompileError, CompileOptions, Scene, Tracer};
+use crate::scene::{BunchTracer, CompileError, CompileOptions, Scene};
 use crate::solid::Solid;
 
 /// Two solids side by side. Volumes are in cubic model units.
@@ -123,8 +122,10 @@ pub fn compare_with(
         &beam,
         sampling,
         progress,
-        || scenes.each_ref().map(Scene::tracer),
-        sample,
+        || (scenes.each_ref().map(Scene::bunch_tracer), Vec::new()),
+        |(tracers, only_one), samples, tallies| {
+            sample(tracers, only_one, samples, tallies);
+        },
         |round, rays| {
             let now = comparison(round, rays);
             let fine = |e: &Estimate| e.target_met || e.value == 0.0;
@@ -148,28 +149,42 @@ fn both_empty() -> Comparison {
     }
 }
 
-fn sample(tracers: &mut [Tracer<'_>; 4], ray: &Ray, tallies: &mut Tallies) {
-    let mut only_one = Chords::default();
-    for (i, tracer) in tracers.iter_mut().enumerate() {
-        let chords = Chords::of(tracer, ray);
-        tallies.chords[i].add(chords);
-        if i >= 2 {
-            only_one.add(chords);
-            let longest = tracer
-                .spans_found()
-                .iter()
-                .max_by(|s, t| s.length().total_cmp(&t.length()));
-            let found = longest.map(|span| Worst {
-                length: span.length() * ray.speed(),
-                from: ray.at(span.enter.t),
-                to: ray.at(span.exit.t),
-                in_a: i == 2,
-            });
-            tallies.worst = longer(tallies.worst, found);
-        }
+/// Adds rays to the tallies of their lattices. What was in `only_one` does not matter: it takes
+/// what each ray finds of both differences.
+fn sample(
+    tracers: &mut [BunchTracer<'_>; 4],
+    only_one: &mut Vec<Chords>,
+    samples: &Samples<'_>,
+    tallies: &mut [Tallies; REPLICATES],
+) {
+    only_one.clear();
+    only_one.resize(samples.replicates.len(), Chords::default());
+    for (solid, tracer) in tracers.iter_mut().enumerate() {
+        tracer.spans(&samples.bunch, |i, ray, tracer| {
+            let tally = &mut tallies[usize::from(samples.replicates[i])];
+            let chords = Chords::found(tracer, ray);
+            tally.chords[solid].add(chords);
+            if solid >= 2 {
+                only_one[i].add(chords);
+                let longest = tracer
+                    .spans_found()
+                    .iter()
+                    .max_by(|s, t| s.length().total_cmp(&t.length()));
+                let found = longest.map(|span| Worst {
+                    length: span.length() * ray.speed(),
+                    from: ray.at(span.enter.t),
+                    to: ray.at(span.exit.t),
+                    in_a: solid == 2,
+                });
+                tally.worst = longer(tally.worst, found);
+            }
+        });
     }
-    only_one.hits = only_one.hits.min(1);
-    tallies.difference.add(only_one);
+    for (chords, &replicate) in only_one.iter().zip(samples.replicates) {
+        let hits = chords.hits.min(1);
+        let chords = Chords { hits, ..*chords };
+        tallies[usize::from(replicate)].difference.add(chords);
+    }
 }
 
 /// The longer of two stretches, the first if they are equally long.

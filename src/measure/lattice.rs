@@ -13,9 +13,10 @@ use std::time::{Duration, Instant};
 use glam::{DVec2, DVec3};
 
 use crate::aabb::Aabb;
+use crate::fan::{Fan, Linear};
 use crate::progress::Progress;
-use crate::ray::Ray;
 use crate::sampling::{Fibonacci, hash, unit};
+use crate::scene::Bunch;
 
 /// How many independent lattices.
 pub(super) const REPLICATES: usize = 16;
@@ -27,9 +28,10 @@ const T_QUANTILE: f64 = 2.131_449_545_559_323;
 /// replicates says nothing about the error.
 pub(super) const ENOUGH_HITS: u64 = 10;
 
-/// How many rays one task takes. Sums are formed by tasks and added in their order, so this
-/// number is part of the answer's last bits, and the number of threads is not.
-const TASK: u64 = 1024;
+/// How many rays a bunch has on average. Rays near each other are traced together, and sums
+/// are formed by bunches and added in their order; so this number is part of the answer's last
+/// bits, and the number of threads is not.
+const BUNCH: u64 = 192;
 
 /// The size of the first lattices.
 const FIRST: u64 = 233;
@@ -78,6 +80,8 @@ pub(super) struct Beam {
     bounds: Aabb,
     /// The axes along and across the rays.
     axes: [usize; 3],
+    /// The rays, at places from −½ to ½.
+    fan: Fan,
 }
 
 /// How far a ray leans on its way through the box, in widths of the box.
@@ -85,8 +89,19 @@ const LEAN: DVec2 = DVec2::new(0.31, 0.23);
 
 impl Beam {
     pub(super) fn new(bounds: Aabb) -> Self {
-        let axis = bounds.size().max_position();
-        Self { bounds, axes: [axis, (axis + 1) % 3, (axis + 2) % 3] }
+        let size = bounds.size();
+        let w = size.max_position();
+        let axes @ [_, u, v] = [w, (w + 1) % 3, (w + 2) % 3];
+        // A ray advances by one along the longest edge for each step of its direction.
+        let mut dir = DVec3::AXES[w];
+        dir[u] = LEAN.x * size[u] / size[w];
+        dir[v] = LEAN.y * size[v] / size[w];
+        let origin = Linear {
+            middle: bounds.center(),
+            right: (1.0 + LEAN.x) * size[u] * DVec3::AXES[u],
+            up: (1.0 + LEAN.y) * size[v] * DVec3::AXES[v],
+        };
+        Self { bounds, axes, fan: Fan { origin, dir: Linear::constant(dir) } }
     }
 
     /// The area that the rays cross at right angles to the longest edge: with room for those
@@ -97,35 +112,48 @@ impl Beam {
         size[u] * room.x * size[v] * room.y
     }
 
-    /// How far the rays go through the box, in steps of their direction.
+    /// How far the rays go through the box, in steps of their direction; so the volume is
+    /// the mean chord in steps times the area.
     pub(super) fn depth(&self) -> f64 {
         self.bounds.size()[self.axes[0]]
     }
 
-    /// The ray at a place in the unit square; it advances by one along the longest edge for
-    /// each step of its direction, so the volume is the mean chord in steps times the area.
-    fn ray(&self, at: DVec2) -> Ray {
-        let [w, u, v] = self.axes;
-        let (size, mut origin) = (self.bounds.size(), self.bounds.center());
-        let mut dir = DVec3::AXES[w];
-        for (axis, at, lean) in [(u, at.x, LEAN.x), (v, at.y, LEAN.y)] {
-            origin[axis] += (at - 0.5) * (1.0 + lean) * size[axis];
-            dir[axis] = lean * size[axis] / size[w];
-        }
-        Ray::new(origin, dir)
+    /// How many columns and rows of bunches some rays make, about as wide as high.
+    fn grid(&self, rays: u64) -> [u64; 2] {
+        let [_, u, v] = self.axes;
+        let (size, bunches) = (self.bounds.size(), (rays / BUNCH).max(1) as f64);
+        let aspect = (size[u] / size[v]).clamp(1.0 / bunches, bunches);
+        let columns = (bunches * aspect).sqrt().round().max(1.0);
+        let rows = (bunches / columns).round().max(1.0);
+        [columns, rows].map(whole)
     }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "counts and places that are whole and below 2^53"
+)]
+fn whole(x: f64) -> u64 {
+    x as u64
+}
+
+/// Rays near each other, and which lattices they are of.
+pub(super) struct Samples<'a> {
+    pub(super) bunch: Bunch<'a>,
+    pub(super) replicates: &'a [u8],
 }
 
 /// Rounds of ever larger lattices until `enough` says so or a limit is reached. Returns the
 /// last round that was finished and the number of rays of all that were.
 ///
-/// `scratch` makes what a thread needs, `sample` adds one ray to a tally.
+/// `scratch` makes what a thread needs, `sample` adds rays to the tallies of their lattices.
 pub(super) fn rounds<S, T: Tally>(
     beam: &Beam,
     sampling: &Sampling,
     progress: Progress<'_>,
     scratch: impl Fn() -> S + Sync + Send,
-    sample: impl Fn(&mut S, &Ray, &mut T) + Sync + Send,
+    sample: impl Fn(&mut S, &Samples<'_>, &mut [T; REPLICATES]) + Sync + Send,
     mut enough: impl FnMut(&Round<T>, u64) -> bool,
 ) -> (Round<T>, u64) {
     let start = Instant::now();
@@ -165,45 +193,117 @@ fn round<S, T: Tally>(
     deadline: Option<Instant>,
     progress: Progress<'_>,
     scratch: &(impl Fn() -> S + Sync + Send),
-    sample: &(impl Fn(&mut S, &Ray, &mut T) + Sync + Send),
+    sample: &(impl Fn(&mut S, &Samples<'_>, &mut [T; REPLICATES]) + Sync + Send),
 ) -> Option<Round<T>> {
     let size = lattice.len();
-    let shift = |replicate: u64| {
-        let part = |axis| unit(hash(seed, &[size, replicate, axis]));
+    let shifts = std::array::from_fn(|replicate| {
+        let part = |axis| unit(hash(seed, &[size, replicate as u64, axis]));
         DVec2::new(part(0), part(1))
-    };
-    let tasks_each = size.div_ceil(TASK);
-    let tasks = tasks_each * REPLICATES as u64;
+    });
+    let grid @ [columns, _] = beam.grid(size * REPLICATES as u64);
     let late = AtomicBool::new(false);
-    let partial = |scratch: &mut S, task: u64| {
-        let (replicate, part) = (task / tasks_each, task % tasks_each);
-        let (shift, mut tally) = (shift(replicate), T::default());
-        let range = part * TASK..((part + 1) * TASK).min(size);
-        progress(range.end - range.start);
-        for i in range {
-            // Looking at the clock costs less than a ray, but not nothing.
-            if i % 64 == 0 && deadline.is_some_and(|deadline| Instant::now() > deadline) {
-                late.store(true, Ordering::Relaxed);
-            }
-            if late.load(Ordering::Relaxed) {
+    let is_late = || {
+        if deadline.is_some_and(|deadline| Instant::now() > deadline) {
+            late.store(true, Ordering::Relaxed);
+        }
+        late.load(Ordering::Relaxed)
+    };
+    let scratch = || (scratch(), Column::default());
+    let partial = |(scratch, column): &mut (S, Column), number: u64| {
+        let mut tallies = std::array::from_fn(|_| T::default());
+        if is_late() {
+            return tallies;
+        }
+        column.fill(lattice, &shifts, grid, number);
+        for bunch in column.bunches(beam, grid, number) {
+            if is_late() {
                 break;
             }
-            sample(scratch, &beam.ray(lattice.point(i, shift)), &mut tally);
+            sample(scratch, &bunch, &mut tallies);
         }
-        tally
+        progress(column.places.len() as u64);
+        tallies
     };
-    let mut partials = in_order(tasks, scratch, partial).into_iter();
+    let partials = in_order(columns, &scratch, partial);
     if late.load(Ordering::Relaxed) {
         return None;
     }
-    let replicates = (0..REPLICATES)
-        .map(|_| {
-            let mut total = T::default();
-            partials.by_ref().take(usize_of(tasks_each)).for_each(|part| total.add(part));
-            total
-        })
-        .collect();
+    let mut replicates: Vec<T> = (0..REPLICATES).map(|_| T::default()).collect();
+    for tallies in partials {
+        replicates.iter_mut().zip(tallies).for_each(|(total, part)| total.add(part));
+    }
     Some(Round { replicates, size })
+}
+
+/// The points of all lattices in one column of a grid, row by row.
+#[derive(Debug, Default)]
+struct Column {
+    found: Vec<(u64, u8, [f64; 2])>,
+    /// Where the rows begin, and the last one ends.
+    rows: Vec<usize>,
+    places: Vec<[f64; 2]>,
+    replicates: Vec<u8>,
+}
+
+impl Column {
+    /// Finds the points of a column.
+    fn fill(
+        &mut self,
+        lattice: Fibonacci,
+        shifts: &[DVec2; REPLICATES],
+        [columns, rows]: [u64; 2],
+        number: u64,
+    ) {
+        let cell = |x: f64, count: u64| whole(x * count as f64).min(count - 1);
+        self.found.clear();
+        self.rows.clear();
+        self.rows.resize(usize_of(rows) + 1, 0);
+        let [from, to] = [number, number + 1].map(|i| i as f64 / columns as f64);
+        for (replicate, &shift) in (0..).zip(shifts) {
+            for i in lattice.between(from - shift.x, to - shift.x) {
+                let p = lattice.point(i, shift);
+                if cell(p.x, columns) == number {
+                    let row = cell(p.y, rows);
+                    self.rows[usize_of(row) + 1] += 1;
+                    self.found.push((row, replicate, [p.x - 0.5, p.y - 0.5]));
+                }
+            }
+        }
+        for row in 1..self.rows.len() {
+            self.rows[row] += self.rows[row - 1];
+        }
+        // Points are put in the order of their rows, those of a row as they were found.
+        let mut next = self.rows.clone();
+        self.places.resize(self.found.len(), [0.0; 2]);
+        self.replicates.resize(self.found.len(), 0);
+        for &(row, replicate, place) in &self.found {
+            let next = &mut next[usize_of(row)];
+            self.places[*next] = place;
+            self.replicates[*next] = replicate;
+            *next += 1;
+        }
+    }
+
+    /// The bunches of the column that was filled last.
+    fn bunches<'a>(
+        &'a self,
+        beam: &'a Beam,
+        [columns, rows]: [u64; 2],
+        number: u64,
+    ) -> impl Iterator<Item = Samples<'a>> {
+        let edge = |i: u64, count: u64| i as f64 / count as f64 - 0.5;
+        let [left, right] = [number, number + 1].map(|i| edge(i, columns));
+        (0..).zip(self.rows.windows(2)).filter(|(_, range)| range[0] < range[1]).map(
+            move |(row, range)| {
+                let corners = [[left, edge(row, rows)], [right, edge(row + 1, rows)]];
+                let (fan, places) = (&beam.fan, &self.places[range[0]..range[1]]);
+                Samples {
+                    bunch: Bunch { fan, corners, places },
+                    replicates: &self.replicates[range[0]..range[1]],
+                }
+            },
+        )
+    }
 }
 
 /// The results of tasks `0..count`, in order, from as many threads as there are.

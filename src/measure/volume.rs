@@ -2,7 +2,7 @@
 
 use super::estimate::{Estimate, Method};
 use super::lattice::{
-    Beam, ENOUGH_HITS, Round, Sampling, Tally, most_hits, rounds, student,
+    Beam, ENOUGH_HITS, REPLICATES, Round, Sampling, Tally, most_hits, rounds, student,
 };
 use crate::progress::Progress;
 use crate::ray::{Ray, Span};
@@ -31,9 +31,9 @@ impl Tally for Chords {
 }
 
 impl Chords {
-    /// Those of one ray.
-    pub(super) fn of(tracer: &mut Tracer<'_>, ray: &Ray) -> Self {
-        let spans = tracer.spans(ray);
+    /// Those of a ray whose spans a tracer has just found.
+    pub(super) fn found(tracer: &Tracer<'_>, ray: &Ray) -> Self {
+        let spans = tracer.spans_found();
         let length = spans.iter().map(Span::length).sum();
         Self {
             length,
@@ -77,9 +77,12 @@ pub fn volume_with(
         &beam,
         sampling,
         progress,
-        || scene.tracer(),
-        |tracer, ray, chords: &mut Chords| {
-            chords.add(Chords::of(tracer, ray));
+        || scene.bunch_tracer(),
+        |tracer, samples, chords: &mut [Chords; REPLICATES]| {
+            tracer.spans(&samples.bunch, |i, ray, tracer| {
+                let of = usize::from(samples.replicates[i]);
+                chords[of].add(Chords::found(tracer, ray));
+            });
         },
         |round, rays| {
             let hopeless = rays >= sampling.max_rays / PATIENCE

@@ -25,7 +25,7 @@ use crate::color::Color;
 use crate::ray::{Crossing, Ray, Sense};
 use crate::shape::{Line, Shape, Spot, inverse_power_of_two};
 use crate::solid::{Place, Solid};
-pub(crate) use beam::{SIDE, Tile, TileTracer};
+pub(crate) use beam::{Bunch, BunchTracer, SIDE, Tile, TileTracer};
 pub use classify::Membership;
 pub use compile::{CompileError, LeafName};
 pub use options::CompileOptions;
@@ -149,7 +149,12 @@ impl Scene {
         self.tracer().contains(point)
     }
 
-    /// Scratch memory for many rays at once, one for each thread.
+    /// Scratch memory for bunches of rays, one for each thread.
+    pub(crate) fn bunch_tracer(&self) -> BunchTracer<'_> {
+        BunchTracer::new(self)
+    }
+
+    /// Scratch memory for tiles of rays, one for each thread.
     pub(crate) fn tile_tracer(&self) -> TileTracer<'_> {
         TileTracer::new(self)
     }

@@ -68,11 +68,11 @@ impl<'a> Tracer<'a> {
     /// lie in one plane. Stretches whose ends are the same number `t` are left out, and so
     /// are such gaps.
     pub fn spans(&mut self, ray: &Ray) -> &[Span] {
-        self.spans.clear();
-        self.collapsed = 0;
+        self.clear();
         if let Some(line) = Line::new(ray, &self.scene.bounds) {
             self.gather(&line);
             self.sweep(&line);
+            debug_assert!(self.counts == self.scene.far_away, "the counters are back");
         }
         &self.spans
     }
@@ -109,41 +109,66 @@ impl<'a> Tracer<'a> {
     /// Walks along the line, toggling all leaves that are crossed at one place before
     /// looking whether the solid was entered or left there.
     fn sweep(&mut self, line: &Line) {
-        let mut entered: Option<Crossing> = None;
+        let mut entered = None;
         let mut from = 0;
         while from < self.events.len() {
             let group = self.group(from);
             from = group.end;
             if let Some((Event { t, leaf, face, .. }, sense)) = self.pass(group) {
                 let crossing = Crossing { t: line.on_ray(t), leaf, face, sense };
-                match entered.take() {
-                    None => entered = Some(crossing),
-                    Some(enter) if enter.t < crossing.t => {
-                        self.append(Span { enter, exit: crossing });
-                    }
-                    Some(_) => self.collapsed += 1,
-                }
+                self.change(&mut entered, crossing);
             }
         }
         debug_assert!(entered.is_none(), "every leaf is left as often as it is entered");
-        debug_assert!(self.counts == self.scene.far_away, "the counters are back");
     }
 
-    /// The first change of the solid whose place on the ray is in a range, if only these
-    /// leaves, and some of their faces, need to be looked at, and the counters of the others are
-    /// given.
+    /// Forgets the spans that were found.
+    pub(super) fn clear(&mut self) {
+        self.spans.clear();
+        self.collapsed = 0;
+    }
+
+    /// Adds the next change to the spans. Between two of them it is kept where the solid was
+    /// entered.
+    pub(super) fn change(&mut self, entered: &mut Option<Crossing>, crossing: Crossing) {
+        match entered.take() {
+            None => *entered = Some(crossing),
+            Some(enter) if enter.t < crossing.t => {
+                self.append(Span { enter, exit: crossing });
+            }
+            Some(_) => self.collapsed += 1,
+        }
+    }
+
+    /// As [`Tracer::spans`], if only some leaves need to be looked at, with whose crossings a
+    /// list is filled, and the counters of the others are given.
+    pub(super) fn spans_among(
+        &mut self,
+        counts: &mut Vec<u32>,
+        line: &Line,
+        fill: impl FnOnce(&mut Vec<Event>),
+    ) {
+        self.clear();
+        self.events.clear();
+        fill(&mut self.events);
+        self.events.sort_unstable_by(in_order);
+        std::mem::swap(&mut self.counts, counts);
+        self.sweep(line);
+        std::mem::swap(&mut self.counts, counts);
+    }
+
+    /// The first change of the solid whose place on the ray is in a range, if only some
+    /// leaves need to be looked at, with whose crossings a list is filled, and the counters of the
+    /// others are given.
     pub(super) fn first_change(
         &mut self,
         counts: &mut Vec<u32>,
         line: &Line,
-        leaves: impl Iterator<Item = (u32, u32)>,
+        fill: impl FnOnce(&mut Vec<Event>),
         [low, high]: [f64; 2],
     ) -> Change {
         self.events.clear();
-        for (leaf, faces) in leaves {
-            let shape = &self.scene.shapes[leaf as usize];
-            shape.crossings(faces, line, &mut Sink { events: &mut self.events, leaf });
-        }
+        fill(&mut self.events);
         self.events.sort_unstable_by(in_order);
         std::mem::swap(&mut self.counts, counts);
         let mut found = Change::None;

@@ -14,11 +14,16 @@
 //! not depend on the tile that has found it. Where it might (two crossings at one `t` of the
 //! ray), the tracer itself is asked.
 
-mod cell;
+mod block;
+mod bunch;
 mod known;
 mod packet;
+mod sight;
+mod survey;
 #[cfg(test)]
 mod tests;
+mod tile;
 mod walk;
 
-pub(crate) use cell::{SIDE, Tile, TileTracer};
+pub(crate) use bunch::{Bunch, BunchTracer};
+pub(crate) use tile::{SIDE, Tile, TileTracer};

@@ -1,22 +1,14 @@
 //! Along one ray of a block, through few leaves.
 
-use super::packet::Slot;
-
-/// A leaf that matters in a cell, and which of its faces do.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Candidate {
-    pub(super) leaf: u32,
-    pub(super) faces: u32,
-}
+use super::block::Slot;
 
 /// A way through a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Outcome {
     /// The solid's boundary is not crossed.
     Nothing,
-    /// It is first crossed at this place of the line, at the start (end 2 i) or the end (2 i + 1)
-    /// of the stretch in slot i; after that it is inside or not.
-    Crossed { t: f64, end: u32, after: bool },
+    /// It is first crossed there.
+    Crossed(Step),
     /// Stretches end at the same place.
     Tied,
     /// Two crossings are one number on the ray.
@@ -58,56 +50,101 @@ impl Table {
     }
 }
 
-/// The first crossing whose place on the ray is in a range. What was in `ends` does not matter.
-pub(super) fn first(
+/// The changes of the solid along one ray of a block.
+pub(super) struct Walk<'a> {
     table: Table,
-    slots: &[(Slot, u32)],
-    ray: usize,
-    [low, high]: [f64; 2],
-    on_ray: impl Fn(f64) -> f64,
-    ends: &mut Ends,
-) -> Outcome {
-    let mut count = 0;
-    for (i, (slot, _)) in (0..).zip(slots) {
-        let (enter, exit) = (slot.enter[ray], slot.exit[ray]);
-        if enter < exit {
-            for end in [(enter, 2 * i), (exit, 2 * i + 1)] {
-                let mut place = count;
-                while place > 0 && ends[place - 1].0 > end.0 {
-                    ends[place] = ends[place - 1];
-                    place -= 1;
+    slots: &'a [Slot],
+    ends: &'a [(f64, u32)],
+    next: usize,
+    state: u32,
+    inside: bool,
+}
+
+/// A change of the solid at a place on a line, at an end of a stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Step {
+    pub(super) t: f64,
+    /// The start (2 i) or the end (2 i + 1) of the stretch in slot i.
+    pub(super) end: u32,
+    /// Whether others end at the same place.
+    pub(super) tied: bool,
+    /// Whether the solid is entered.
+    pub(super) enters: bool,
+}
+
+impl<'a> Walk<'a> {
+    /// From the start of a line. What was in `ends` does not matter.
+    pub(super) fn new(
+        table: Table,
+        slots: &'a [Slot],
+        ray: usize,
+        ends: &'a mut Ends,
+    ) -> Self {
+        let mut count = 0;
+        for (i, slot) in (0..).zip(slots) {
+            let (enter, exit) = (slot.enter[ray], slot.exit[ray]);
+            if enter < exit {
+                for end in [(enter, 2 * i), (exit, 2 * i + 1)] {
+                    let mut place = count;
+                    while place > 0 && ends[place - 1].0 > end.0 {
+                        ends[place] = ends[place - 1];
+                        place -= 1;
+                    }
+                    ends[place] = end;
+                    count += 1;
                 }
-                ends[place] = end;
-                count += 1;
             }
         }
+        let inside = table.holds(0);
+        Self { table, slots, ends: &ends[..count], next: 0, state: 0, inside }
     }
-    let ends = &ends[..count];
-    let (mut state, mut before, mut i) = (0, table.holds(0), 0);
-    while let Some(&(t, end)) = ends.get(i) {
-        let group = i;
-        #[expect(clippy::float_cmp, reason = "one place is one number")]
-        while let Some(&(_, end)) = ends.get(i).filter(|(other, _)| *other == t) {
-            state ^= 1 << slots[end as usize / 2].1;
-            i += 1;
+
+    /// The place of the next end, whatever it does to the solid.
+    fn peek(&self) -> Option<f64> {
+        self.ends.get(self.next).map(|&(t, _)| t)
+    }
+}
+
+impl Iterator for Walk<'_> {
+    type Item = Step;
+
+    fn next(&mut self) -> Option<Step> {
+        while let Some(&(t, end)) = self.ends.get(self.next) {
+            let first = self.next;
+            #[expect(clippy::float_cmp, reason = "one place is one number")]
+            while let Some(&(_, end)) = self.ends.get(self.next).filter(|e| e.0 == t) {
+                self.state ^= 1 << self.slots[end as usize / 2].candidate;
+                self.next += 1;
+            }
+            let enters = self.table.holds(self.state);
+            if enters != self.inside {
+                self.inside = enters;
+                return Some(Step { t, end, tied: self.next > first + 1, enters });
+            }
         }
-        let after = table.holds(state);
-        if after == before {
-            continue;
-        }
-        before = after;
-        let place = on_ray(t);
+        None
+    }
+}
+
+/// The first crossing whose place on the ray is in a range.
+pub(super) fn first(
+    mut walk: Walk<'_>,
+    [low, high]: [f64; 2],
+    on_ray: impl Fn(f64) -> f64,
+) -> Outcome {
+    while let Some(step) = walk.next() {
+        let place = on_ray(step.t);
         if place >= high {
             break;
         }
         if place >= low {
-            if i > group + 1 {
+            if step.tied {
                 return Outcome::Tied;
             }
-            if ends.get(i).is_some_and(|&(next, _)| on_ray(next) <= place) {
+            if walk.peek().is_some_and(|next| on_ray(next) <= place) {
                 return Outcome::Collapsed;
             }
-            return Outcome::Crossed { t, end, after };
+            return Outcome::Crossed(step);
         }
     }
     Outcome::Nothing

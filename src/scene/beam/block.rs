@@ -1,0 +1,223 @@
+//! The rays of a tile, side by side, and where they are inside of leaves.
+
+use pulp::{Arch, Simd, WithSimd};
+
+use crate::aabb::Aabb;
+use crate::lanes::{Lanes, Vec3, Vector};
+use crate::ray::Ray;
+use crate::shape::{Line, Lines, Rays, Shape, Stretch};
+
+/// How many rays a block has: 8 × 8.
+pub(super) const BLOCK: usize = 64;
+
+/// One number for each ray of a block.
+pub(super) type Numbers = [f64; BLOCK];
+
+/// Rays and their lines, coordinate by coordinate.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    /// Those of the rays, then those of the lines.
+    origin: [Numbers; 3],
+    dir: [Numbers; 3],
+    rest: [Numbers; 3],
+    offset: Numbers,
+    scale: Numbers,
+}
+
+/// Where the rays of a block are inside a leaf, once; empty where `enter` is infinite.
+#[derive(Clone, Debug)]
+pub(super) struct Slot {
+    /// The place of the leaf in a list.
+    pub(super) candidate: u32,
+    pub(super) enter: Numbers,
+    pub(super) exit: Numbers,
+    pub(super) enter_face: Numbers,
+    pub(super) exit_face: Numbers,
+}
+
+impl Slot {
+    pub(super) const EMPTY: Self = Self {
+        candidate: 0,
+        enter: [f64::INFINITY; BLOCK],
+        exit: [f64::INFINITY; BLOCK],
+        enter_face: [0.0; BLOCK],
+        exit_face: [0.0; BLOCK],
+    };
+}
+
+impl Block {
+    pub(super) const EMPTY: Self = Self {
+        origin: [[0.0; BLOCK]; 3],
+        dir: [[0.0; BLOCK]; 3],
+        rest: [[0.0; BLOCK]; 3],
+        offset: [0.0; BLOCK],
+        scale: [0.0; BLOCK],
+    };
+
+    pub(super) fn set_ray(&mut self, i: usize, ray: &Ray) {
+        for axis in 0..3 {
+            self.origin[axis][i] = ray.origin[axis];
+            self.dir[axis][i] = ray.dir[axis];
+        }
+    }
+
+    /// Makes lines of the rays; says which of them are valid and meet the bounds, which are
+    /// bounded.
+    pub(super) fn make_lines(&mut self, arch: Arch, bounds: &Aabb) -> u64 {
+        arch.dispatch(MakeLines { block: self, bounds })
+    }
+
+    /// One of the lines.
+    pub(super) fn line(&self, i: usize) -> Line {
+        let at = |numbers: &[Numbers; 3]| Vec3 {
+            x: numbers[0][i],
+            y: numbers[1][i],
+            z: numbers[2][i],
+        };
+        let rays =
+            Rays { origin: at(&self.origin), rest: at(&self.rest), dir: at(&self.dir) };
+        Line::from(Lines { rays, offset: self.offset[i], scale: self.scale[i] })
+    }
+
+    /// A place on one of the lines as a place on its ray.
+    pub(super) fn on_ray(&self, i: usize, t: f64) -> f64 {
+        (self.offset[i] + t) * self.scale[i]
+    }
+
+    /// Where the rays are inside a leaf, as far as some of its faces say; in how many slots.
+    /// Rays that are not wanted may be left out.
+    pub(super) fn stretches(
+        &self,
+        arch: Arch,
+        shape: &Shape,
+        faces: u32,
+        wanted: u64,
+        slots: [&mut Slot; 2],
+    ) {
+        arch.dispatch(Stretches { block: self, shape, faces, wanted, slots });
+    }
+}
+
+/// How many slots [`Block::stretches`] fills.
+pub(super) fn slots_of(shape: &Shape, faces: u32) -> usize {
+    match shape {
+        Shape::Quadric(leaf) => leaf.slots(faces),
+        Shape::Cuboid(_) | Shape::HalfSpace(_) => 1,
+        Shape::Polyhedron(_) => 0,
+    }
+}
+
+struct MakeLines<'a> {
+    block: &'a mut Block,
+    bounds: &'a Aabb,
+}
+
+impl WithSimd for MakeLines<'_> {
+    type Output = u64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> u64 {
+        let Self { block, bounds } = self;
+        let mut met = [0.0; BLOCK];
+        for i in 0..BLOCK / S::F64_LANES {
+            let origin = load3(simd, &block.origin, i);
+            let dir = load3(simd, &block.dir, i);
+            let (lines, valid) = Lines::new(origin, dir, bounds);
+            let Lines { rays: Rays { origin, rest, dir }, offset, scale } = lines;
+            store3(&mut block.origin, i, origin);
+            store3(&mut block.rest, i, rest);
+            store3(&mut block.dir, i, dir);
+            store(&mut block.offset, i, offset);
+            store(&mut block.scale, i, scale);
+            store(&mut met, i, Vector::select(valid, offset.same(1.0), offset.same(0.0)));
+        }
+        met.iter().rev().fold(0, |bits, &met| bits << 1 | u64::from(met > 0.0))
+    }
+}
+
+struct Stretches<'a> {
+    block: &'a Block,
+    shape: &'a Shape,
+    faces: u32,
+    wanted: u64,
+    slots: [&'a mut Slot; 2],
+}
+
+impl WithSimd for Stretches<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { block, shape, faces, wanted, slots: [first, second] } = self;
+        let twice = slots_of(shape, faces) == 2;
+        for i in 0..BLOCK / S::F64_LANES {
+            if wanted >> (i * S::F64_LANES) & (u64::MAX >> (64 - S::F64_LANES)) == 0 {
+                continue;
+            }
+            let rays = block.rays(simd, i);
+            match shape {
+                Shape::Cuboid(leaf) => first.put(i, leaf.stretch(faces, &rays)),
+                Shape::HalfSpace(leaf) => first.put(i, leaf.stretch(&rays)),
+                Shape::Quadric(leaf) => {
+                    let [one, other] = leaf.stretches(faces, &rays);
+                    first.put(i, one);
+                    if twice {
+                        second.put(i, other);
+                    }
+                }
+                Shape::Polyhedron(_) => {}
+            }
+        }
+    }
+}
+
+impl Block {
+    #[inline(always)]
+    fn rays<S: Simd>(&self, simd: S, i: usize) -> Rays<Vector<S>> {
+        Rays {
+            origin: load3(simd, &self.origin, i),
+            rest: load3(simd, &self.rest, i),
+            dir: load3(simd, &self.dir, i),
+        }
+    }
+}
+
+impl Slot {
+    #[inline(always)]
+    fn put<S: Simd>(&mut self, i: usize, stretch: Stretch<Vector<S>>) {
+        let Stretch { enter, exit, enter_face, exit_face } = stretch;
+        let never = enter.same(f64::INFINITY);
+        let is_one = enter.less(exit);
+        store(&mut self.enter, i, Vector::select(is_one, enter, never));
+        store(&mut self.exit, i, Vector::select(is_one, exit, never));
+        store(&mut self.enter_face, i, enter_face);
+        store(&mut self.exit_face, i, exit_face);
+    }
+}
+
+/// The numbers of packet `i`.
+#[inline(always)]
+fn load<S: Simd>(simd: S, numbers: &Numbers, i: usize) -> Vector<S> {
+    let (vectors, _) = S::as_simd_f64s(numbers);
+    Vector(simd, vectors[i])
+}
+
+#[inline(always)]
+fn load3<S: Simd>(simd: S, numbers: &[Numbers; 3], i: usize) -> Vec3<Vector<S>> {
+    let [x, y, z] = numbers;
+    Vec3 { x: load(simd, x, i), y: load(simd, y, i), z: load(simd, z, i) }
+}
+
+#[inline(always)]
+fn store<S: Simd>(numbers: &mut Numbers, i: usize, vector: Vector<S>) {
+    let (vectors, _) = S::as_mut_simd_f64s(numbers);
+    vectors[i] = vector.1;
+}
+
+#[inline(always)]
+fn store3<S: Simd>(numbers: &mut [Numbers; 3], i: usize, vectors: Vec3<Vector<S>>) {
+    let [x, y, z] = numbers;
+    store(x, i, vectors.x);
+    store(y, i, vectors.y);
+    store(z, i, vectors.z);
+}

@@ -1,0 +1,259 @@
+//! A tile of rays, divided into cells.
+
+use super::block::{BLOCK, Block};
+use super::packet::Packet;
+use super::sight::Sight;
+use super::survey::{List, Survey};
+use super::walk::{Outcome, first};
+use crate::fan::Fan;
+use crate::ray::{Crossing, Ray};
+use crate::scene::trace::Change;
+use crate::scene::{Scene, Tracer};
+use crate::shape::Region;
+
+/// The side of a tile, in rays.
+pub(crate) const SIDE: usize = 32;
+
+/// The side of a block.
+const BLOCK_SIDE: usize = 8;
+
+/// How many blocks a tile has.
+const BLOCKS: usize = (SIDE / BLOCK_SIDE) * (SIDE / BLOCK_SIDE);
+
+/// No more leaves than this, and a cell is not divided in depth.
+const ENOUGH: usize = 3;
+
+/// A cell is divided in depth if it is longer than it is wide by this much.
+const LONG: f64 = 2.0;
+
+/// Rays of a fan in rows and columns.
+#[derive(Clone, Copy)]
+pub(crate) struct Tile<'a> {
+    pub(crate) fan: &'a Fan,
+    /// How many columns and rows, at most [`SIDE`] each.
+    pub(crate) size: [usize; 2],
+    /// Where in the fan the ray in a column and a row is: farther to one side the larger the
+    /// column, and the row.
+    pub(crate) at: &'a dyn Fn(usize, usize) -> [f64; 2],
+}
+
+/// Scratch memory for tiles of rays through a scene; one for each thread.
+#[derive(Debug)]
+pub(crate) struct TileTracer<'a> {
+    scene: &'a Scene,
+    survey: Survey<'a>,
+    blocks: Vec<Block>,
+    /// Which rays of each block are to be traced still.
+    open: [u64; BLOCKS],
+    /// Which blocks have lines.
+    has_lines: u32,
+    hits: Vec<Option<Crossing>>,
+    packet: Packet,
+    /// For blocks with many leaves or with stretches that end together.
+    many: Tracer<'a>,
+    /// For rays of which a tile is not sure.
+    alone: Tracer<'a>,
+}
+
+/// Some blocks of a tile between two depths.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    /// The first block, and how many blocks each way.
+    block: usize,
+    side: usize,
+    depth: [f64; 2],
+}
+
+impl<'a> TileTracer<'a> {
+    pub(crate) fn new(scene: &'a Scene) -> Self {
+        Self {
+            scene,
+            survey: Survey::new(scene),
+            blocks: vec![Block::EMPTY; BLOCKS],
+            open: [0; BLOCKS],
+            has_lines: 0,
+            hits: vec![None; BLOCKS * BLOCK],
+            packet: Packet::new(),
+            many: scene.tracer(),
+            alone: scene.tracer(),
+        }
+    }
+
+    /// What [`Tracer::first_hit`] says of each ray of a tile, by column and row.
+    pub(crate) fn first_hits(
+        &mut self,
+        tile: &Tile<'_>,
+        mut found: impl FnMut(usize, usize, Option<Crossing>),
+    ) {
+        self.hits.fill(None);
+        self.has_lines = 0;
+        self.open = [0; BLOCKS];
+        for j in 0..tile.size[1] {
+            for i in 0..tile.size[0] {
+                let place = place(i, j);
+                self.open[place / BLOCK] |= 1 << (place % BLOCK);
+            }
+        }
+        if self.scene.bounds.is_bounded() {
+            self.look_at(tile);
+        }
+        for j in 0..tile.size[1] {
+            for i in 0..tile.size[0] {
+                found(i, j, self.hits[place(i, j)]);
+            }
+        }
+    }
+
+    /// Makes lines of the rays of a block when they are first needed.
+    fn make_lines(&mut self, tile: &Tile<'_>, block: usize) {
+        if self.has_lines & 1 << block == 0 {
+            self.has_lines |= 1 << block;
+            let wanted = self.open[block];
+            for ray in (0..BLOCK).filter(|ray| wanted >> ray & 1 == 1) {
+                self.blocks[block].set_ray(ray, &tile.ray_of(block, ray));
+            }
+            let valid = self.blocks[block].make_lines(self.packet.arch, &self.scene.bounds);
+            self.open[block] &= valid;
+        }
+    }
+
+    /// Finds the leaves that the tile may meet, and divides it.
+    fn look_at(&mut self, tile: &Tile<'_>) {
+        let sight = Sight::new(tile.fan, tile.corners(0, SIDE), self.scene);
+        let [near, far] = sight.depth;
+        let whole =
+            Cell { block: 0, side: SIDE / BLOCK_SIDE, depth: [near.max(0.0), far] };
+        if whole.depth[0] >= far || self.is_done(&whole) {
+            return;
+        }
+        let around = whole.region(tile, &sight);
+        let all = self.survey.all(&around);
+        self.divide(&Part { tile, sight: &sight, cell: whole }, &all);
+    }
+
+    /// Looks at a cell; all leaves that matter are in a list.
+    fn divide(&mut self, part: &Part<'_>, list: &List) {
+        let region = part.cell.region(part.tile, part.sight);
+        if let Some(inner) = self.survey.enter(&region, list) {
+            self.look_into(part, &region, &inner);
+        }
+        self.survey.leave(list);
+    }
+
+    /// Divides a cell in which something is open, or traces its rays.
+    fn look_into(&mut self, part: &Part<'_>, region: &Region, list: &List) {
+        let [long, wide] = region.lengths();
+        let Cell { block, side, depth: [near, far] } = part.cell;
+        let middle = 0.5 * (near + far);
+        if list.len() > ENOUGH && long > LONG * wide && near < middle && middle < far {
+            for depth in [[near, middle], [middle, far]] {
+                if !self.is_done(&part.cell) {
+                    let cell = Cell { depth, ..part.cell };
+                    self.divide(&Part { cell, ..*part }, list);
+                }
+            }
+        } else if side > 1 {
+            let side = side / 2;
+            for quarter in 0..4 {
+                let block = block + quarter * side * side;
+                let cell = Cell { block, side, ..part.cell };
+                if !self.is_done(&cell) {
+                    self.divide(&Part { cell, ..*part }, list);
+                }
+            }
+        } else {
+            self.trace(part, list);
+        }
+    }
+
+    fn is_done(&self, cell: &Cell) -> bool {
+        self.open[cell.block..cell.block + cell.side * cell.side].iter().all(|&b| b == 0)
+    }
+
+    /// Traces the rays of a block between two depths.
+    fn trace(&mut self, part: &Part<'_>, list: &List) {
+        let Part { tile, cell, .. } = part;
+        self.make_lines(tile, cell.block);
+        let (open, block) = (self.open[cell.block], &self.blocks[cell.block]);
+        self.packet.choose(self.scene, self.survey.leaves(list));
+        self.packet.make_table(self.scene, &mut self.survey.known);
+        self.packet.meet(self.scene, block, open);
+        let mut open = open;
+        while open != 0 {
+            let ray = open.trailing_zeros() as usize;
+            open &= open - 1;
+            let block = &self.blocks[cell.block];
+            let outcome = match self.packet.walk(ray) {
+                Some(walk) => first(walk, cell.depth, |t| block.on_ray(ray, t)),
+                None => Outcome::Tied,
+            };
+            let hit = match outcome {
+                Outcome::Nothing => continue,
+                Outcome::Crossed(step) => Some(self.packet.crossing(&step, block, ray)),
+                Outcome::Tied => {
+                    let (line, counts) = (block.line(ray), &mut self.survey.known.counts);
+                    let Self { scene, packet, many, .. } = self;
+                    let fill =
+                        |events: &mut _| packet.add_events(scene, &line, ray, events);
+                    match many.first_change(counts, &line, fill, cell.depth) {
+                        Change::None => continue,
+                        Change::First(crossing) => Some(crossing),
+                        Change::Collapsed => {
+                            self.alone.first_hit(&tile.ray_of(cell.block, ray))
+                        }
+                    }
+                }
+                Outcome::Collapsed => self.alone.first_hit(&tile.ray_of(cell.block, ray)),
+            };
+            self.hits[cell.block * BLOCK + ray] = hit;
+            self.open[cell.block] &= !(1 << ray);
+        }
+    }
+}
+
+impl Tile<'_> {
+    /// A ray of a block.
+    fn ray_of(&self, block: usize, ray: usize) -> Ray {
+        let [i, j] = block_place(block);
+        let [right, up] = (self.at)(i + ray % BLOCK_SIDE, j + ray / BLOCK_SIDE);
+        self.fan.ray(right, up)
+    }
+
+    /// The places of the first and the last of some rays, counted from a block.
+    fn corners(&self, block: usize, side: usize) -> [[f64; 2]; 2] {
+        let [i, j] = block_place(block);
+        let last = |first: usize, size: usize| (first + side).min(size).max(first + 1) - 1;
+        let [width, height] = self.size;
+        [(self.at)(i, j), (self.at)(last(i, width), last(j, height))]
+    }
+}
+
+impl Cell {
+    /// The rays of the cell between its depths, and some more.
+    fn region(&self, tile: &Tile<'_>, sight: &Sight<'_>) -> Region {
+        sight.region(tile.corners(self.block, self.side * BLOCK_SIDE), self.depth)
+    }
+}
+
+/// A cell of a tile.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    tile: &'a Tile<'a>,
+    sight: &'a Sight<'a>,
+    cell: Cell,
+}
+
+/// The number of a ray in its tile. Blocks are numbered so that those of a quarter follow
+/// one another (G. M. Morton's order, 1966).
+fn place(i: usize, j: usize) -> usize {
+    let [x, y] = [i / BLOCK_SIDE, j / BLOCK_SIDE];
+    let block = (x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2;
+    block * BLOCK + j % BLOCK_SIDE * BLOCK_SIDE + i % BLOCK_SIDE
+}
+
+/// The first ray of a block.
+fn block_place(block: usize) -> [usize; 2] {
+    let x = (block & 1) | (block >> 1 & 2);
+    let y = (block >> 1 & 1) | (block >> 2 & 2);
+    [x * BLOCK_SIDE, y * BLOCK_SIDE]
+}
