@@ -16,12 +16,12 @@ impl Tracer<'_> {
     /// could have longer ones; they do not count.
     pub fn uncertain(&self, ray: &Ray) -> u64 {
         let mut count = self.collapsed;
+        let longest = self.longest_thin(ray);
         let pieces = self.spans.windows(2).map(|pair| (pair[0].exit, pair[1].enter));
         let pieces = pieces.chain(self.spans.iter().map(|span| (span.enter, span.exit)));
-        let mut thin = None;
         for (from, to) in pieces {
             let length = to.t - from.t;
-            if length <= *thin.get_or_insert_with(|| self.thin(ray)) {
+            if length * length <= longest {
                 let error = |crossing| self.scene.error_at(ray, crossing);
                 count += u64::from(length <= error(&from) + error(&to));
             }
@@ -29,8 +29,9 @@ impl Tracer<'_> {
         count
     }
 
-    /// The length, in multiples of the ray's direction, from which on pieces are certain.
-    fn thin(&self, ray: &Ray) -> f64 {
+    /// The square of the length, in multiples of the ray's direction, from which on pieces are
+    /// certain.
+    fn longest_thin(&self, ray: &Ray) -> f64 {
         /// The bound of a graze is 2.5 √(ε R) at either end; the rest is room for solids of
         /// which R is not the largest length.
         const ROOM: f64 = 16.0;
@@ -39,6 +40,6 @@ impl Tracer<'_> {
         let far = bounds.min.abs().max(bounds.max.abs()).max_element();
         let far = 2.0 * far + ray.origin.abs().max_element();
         let moved = self.scene.worst_slack + 16.0 * U * self.scene.worst_condition * far;
-        ROOM * (moved * size).sqrt() / ray.speed()
+        ROOM * moved * (ROOM * size) / ray.speed().powi(2)
     }
 }

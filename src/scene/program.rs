@@ -144,6 +144,11 @@ impl Program {
         counts[node as usize] >= self.nodes[node as usize].need
     }
 
+    /// How a node combines its children.
+    pub(crate) fn combine(&self, node: u32) -> Combine {
+        self.nodes[node as usize].combine
+    }
+
     /// The node above one that is not the root.
     pub(crate) fn parent(&self, node: u32) -> u32 {
         self.nodes[node as usize].parent

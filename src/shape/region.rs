@@ -76,6 +76,11 @@ impl Region {
         Self::new(b.center(), DVec3::new(half.x, 0.0, 0.0), sides, reach)
     }
 
+    /// Half its longest edge.
+    pub(crate) fn along(&self) -> DVec3 {
+        self.along
+    }
+
     /// How long it is along, and how wide.
     pub(crate) fn lengths(&self) -> [f64; 2] {
         [self.along.length(), self.sides[0].length().max(self.sides[1].length())]

@@ -27,8 +27,9 @@ pub(super) struct Block {
 /// Where the rays of a block are inside a leaf, once; empty where `enter` is infinite.
 #[derive(Clone, Debug)]
 pub(super) struct Slot {
-    /// The place of the leaf in a list.
-    pub(super) candidate: u32,
+    pub(super) leaf: u32,
+    /// What entering the leaf adds to the state of the solid.
+    pub(super) weight: u64,
     pub(super) enter: Numbers,
     pub(super) exit: Numbers,
     pub(super) enter_face: Numbers,
@@ -37,7 +38,8 @@ pub(super) struct Slot {
 
 impl Slot {
     pub(super) const EMPTY: Self = Self {
-        candidate: 0,
+        leaf: 0,
+        weight: 0,
         enter: [f64::INFINITY; BLOCK],
         exit: [f64::INFINITY; BLOCK],
         enter_face: [0.0; BLOCK],

@@ -52,9 +52,8 @@ impl<'a> BunchTracer<'a> {
         let region = sight.region(corners, sight.depth);
         let all = self.survey.all(&region);
         if let Some(list) = self.survey.enter(&region, &all) {
-            let leaves = self.survey.leaves(&list);
-            self.packet.choose(self.scene, leaves);
-            self.packet.make_table(self.scene, &mut self.survey.known);
+            let (known, leaves) = self.survey.found(&list);
+            self.packet.choose(self.scene, known, leaves, region.along());
             for (first, places) in (0..).step_by(BLOCK).zip(places.chunks(BLOCK)) {
                 self.trace(fan, places, |i, ray, tracer| visit(first + i, ray, tracer));
             }
@@ -81,7 +80,7 @@ impl<'a> BunchTracer<'a> {
             open &= open - 1;
             let [right, up] = places[i];
             let ray = fan.ray(right, up);
-            if !packet.spans_by_table(block, i, tracer) {
+            if !packet.spans_by_walk(block, i, tracer) {
                 let line = block.line(i);
                 tracer.spans_among(&mut survey.known.counts, &line, |events| {
                     packet.add_events(scene, &line, i, events);

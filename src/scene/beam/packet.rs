@@ -1,12 +1,14 @@
 //! A block of rays and the few leaves that matter to it.
 
+use glam::DVec3;
 use pulp::Arch;
 
 use super::block::{Block, Slot, slots_of};
 use super::known::Known;
 use super::survey::Candidate;
-use super::walk::{Ends, FEW, NO_ENDS, Step, Table, Walk};
+use super::walk::{Ends, FEW, Logic, Step, Walk};
 use crate::ray::{Crossing, Sense};
+use crate::scene::program::Combine;
 use crate::scene::{Scene, Tracer};
 use crate::shape::{ALL, Event, Line, Shape, Sink, face_of};
 
@@ -20,7 +22,7 @@ pub(super) struct Packet {
     used: usize,
     /// The leaves that are crossed any number of times.
     meshes: Vec<u32>,
-    table: Option<Table>,
+    logic: Option<Logic>,
     ends: Ends,
 }
 
@@ -32,93 +34,115 @@ impl Packet {
             slots: Vec::new(),
             used: 0,
             meshes: Vec::new(),
-            table: None,
-            ends: NO_ENDS,
+            logic: None,
+            ends: Vec::new(),
         }
     }
 
-    /// Takes leaves to meet.
-    pub(super) fn choose(&mut self, scene: &Scene, candidates: &[Candidate]) {
+    /// Takes leaves to meet, in about the order in which rays in a direction do.
+    pub(super) fn choose(
+        &mut self,
+        scene: &Scene,
+        known: &mut Known<'_>,
+        candidates: &[Candidate],
+        along: DVec3,
+    ) {
         self.candidates.clear();
         self.candidates.extend_from_slice(candidates);
+        let depth = |c: &Candidate| scene.clipped[c.leaf as usize].center().dot(along);
+        self.candidates.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
         self.meshes.clear();
         for &Candidate { leaf, .. } in candidates {
             if let Shape::Polyhedron(_) = scene.shapes[leaf as usize] {
                 self.meshes.push(leaf);
             }
         }
+        self.logic = if self.meshes.is_empty() { self.logic(scene, known) } else { None };
     }
 
-    /// Finds where the rays of a block are inside the leaves. Rays that are not wanted may be
-    /// left out.
-    pub(super) fn meet(&mut self, scene: &Scene, block: &Block, wanted: u64) {
-        self.used = 0;
-        for (number, &Candidate { leaf, faces }) in (0..).zip(&self.candidates) {
-            let shape = &scene.shapes[leaf as usize];
-            while self.slots.len() < self.used + 2 {
-                self.slots.push(Slot::EMPTY);
-            }
-            if let [first, second] = &mut self.slots[self.used..self.used + 2] {
-                first.candidate = number;
-                second.candidate = number;
-                block.stretches(self.arch, shape, faces, wanted, [first, second]);
-            }
-            self.used += slots_of(shape, faces);
-        }
-    }
-
-    /// Makes a table of the solid for all states of the leaves, if there are few and no meshes.
-    pub(super) fn make_table(&mut self, scene: &Scene, known: &mut Known<'_>) {
-        self.table = None;
-        let few = self.candidates.len();
-        if few > FEW || !self.meshes.is_empty() {
-            return;
-        }
+    /// The solid as a function of the leaves, if they are few, or all below one node.
+    ///
+    /// All nodes above leaves that matter are open. If there is but one above all leaves, the
+    /// nodes above it have its value: what else is below them makes no difference, or they would
+    /// be decided.
+    fn logic(&self, scene: &Scene, known: &mut Known<'_>) -> Option<Logic> {
         let Scene { program, literals, .. } = scene;
-        let counts = &mut known.counts;
+        let literal = |c: &Candidate| literals[c.leaf as usize];
+        let parent = literal(self.candidates.first()?).parent;
+        if self.candidates.iter().all(|c| literal(c).parent == parent) {
+            let holding = self.candidates.iter().filter(|c| literal(c).complement).count();
+            let count = self.candidates.len();
+            return Some(match program.combine(parent) {
+                Combine::All => Logic::All { start: (count - holding) as u64 },
+                Combine::Any => Logic::Any { start: holding as u64 },
+            });
+        }
+        let few = self.candidates.len();
+        if few > FEW {
+            return None;
+        }
         let mut inside = [false; FEW];
         let mut flip = |counts: &mut [u32], bit: usize| {
-            let literal = literals[self.candidates[bit].leaf as usize];
+            let literal = literal(&self.candidates[bit]);
             inside[bit] = !inside[bit];
             program.toggle(counts, literal.parent, inside[bit] != literal.complement);
         };
-        let table = Table::new(few, |bit| {
+        let counts = &mut known.counts;
+        let table = Logic::table(few, |bit| {
             if bit < few {
                 flip(counts, bit);
             }
             program.root(counts)
         });
         // The last number of a Gray code has one bit.
-        if few > 0 {
-            flip(counts, few - 1);
-        }
-        self.table = Some(table);
+        flip(counts, few - 1);
+        Some(table)
     }
 
-    /// Along a ray by the table, if there is one.
+    /// Finds where the rays of a block are inside the leaves. Rays that are not wanted may be
+    /// left out.
+    pub(super) fn meet(&mut self, scene: &Scene, block: &Block, wanted: u64) {
+        self.used = 0;
+        for (number, &Candidate { leaf, faces }) in self.candidates.iter().enumerate() {
+            let shape = &scene.shapes[leaf as usize];
+            let complement = scene.literals[leaf as usize].complement;
+            let weight = self.logic.map_or(0, |logic| logic.weight(number, complement));
+            while self.slots.len() < self.used + 2 {
+                self.slots.push(Slot::EMPTY);
+            }
+            if let [first, second] = &mut self.slots[self.used..self.used + 2] {
+                (first.leaf, first.weight) = (leaf, weight);
+                (second.leaf, second.weight) = (leaf, weight);
+                block.stretches(self.arch, shape, faces, wanted, [first, second]);
+            }
+            self.used += slots_of(shape, faces);
+        }
+    }
+
+    /// Along a ray, if the solid is a function of few leaves.
     pub(super) fn walk(&mut self, ray: usize) -> Option<Walk<'_>> {
         let slots = &self.slots[..self.used];
-        self.table.map(|table| Walk::new(table, slots, ray, &mut self.ends))
+        self.logic.map(|logic| Walk::new(logic, slots, ray, &mut self.ends))
     }
 
-    /// Has a tracer know the spans of a ray of a block by the table; says whether that was
-    /// possible.
-    pub(super) fn spans_by_table(
+    /// Has a tracer know the spans of a ray of a block by walking along it; says whether that
+    /// was possible.
+    pub(super) fn spans_by_walk(
         &mut self,
         block: &Block,
         ray: usize,
         tracer: &mut Tracer<'_>,
     ) -> bool {
-        let Some(table) = self.table else {
+        let Some(logic) = self.logic else {
             return false;
         };
         tracer.clear();
         let mut entered = None;
-        for step in Walk::new(table, &self.slots[..self.used], ray, &mut self.ends) {
+        for step in Walk::new(logic, &self.slots[..self.used], ray, &mut self.ends) {
             if step.tied {
                 return false;
             }
-            let crossing = crossing(&self.slots, &self.candidates, &step, block, ray);
+            let crossing = crossing(&self.slots, &step, block, ray);
             tracer.change(&mut entered, crossing);
         }
         true
@@ -126,7 +150,7 @@ impl Packet {
 
     /// What a step along a ray of a block is to the ray.
     pub(super) fn crossing(&self, step: &Step, block: &Block, ray: usize) -> Crossing {
-        crossing(&self.slots, &self.candidates, step, block, ray)
+        crossing(&self.slots, step, block, ray)
     }
 
     /// Adds all crossings of a ray with the leaves, in any order.
@@ -138,7 +162,7 @@ impl Packet {
         events: &mut Vec<Event>,
     ) {
         for slot in &self.slots[..self.used] {
-            let leaf = self.candidates[slot.candidate as usize].leaf;
+            let leaf = slot.leaf;
             let (t, face) = (slot.enter[ray], slot.enter_face[ray]);
             if t < slot.exit[ray] {
                 let face = face_of(face);
@@ -156,7 +180,6 @@ impl Packet {
 
 fn crossing(
     slots: &[Slot],
-    candidates: &[Candidate],
     step: &Step,
     block: &Block,
     ray: usize,
@@ -166,7 +189,7 @@ fn crossing(
     let face = if leaves { slot.exit_face[ray] } else { slot.enter_face[ray] };
     Crossing {
         t: block.on_ray(ray, step.t),
-        leaf: candidates[slot.candidate as usize].leaf,
+        leaf: slot.leaf,
         face: face_of(face),
         sense: if step.enters { Sense::Enter } else { Sense::Exit },
     }

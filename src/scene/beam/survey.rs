@@ -99,8 +99,8 @@ impl<'a> Survey<'a> {
         self.candidates.truncate(list.leaves.end);
     }
 
-    /// The leaves of a list.
-    pub(super) fn leaves(&self, list: &List) -> &[Candidate] {
-        &self.candidates[list.leaves.clone()]
+    /// What is known in the region that was entered last, and the leaves that matter there.
+    pub(super) fn found(&mut self, list: &List) -> (&mut Known<'a>, &[Candidate]) {
+        (&mut self.known, &self.candidates[list.leaves.clone()])
     }
 }

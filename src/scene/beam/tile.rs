@@ -175,8 +175,8 @@ impl<'a> TileTracer<'a> {
         let Part { tile, cell, .. } = part;
         self.make_lines(tile, cell.block);
         let (open, block) = (self.open[cell.block], &self.blocks[cell.block]);
-        self.packet.choose(self.scene, self.survey.leaves(list));
-        self.packet.make_table(self.scene, &mut self.survey.known);
+        let (known, leaves) = self.survey.found(list);
+        self.packet.choose(self.scene, known, leaves, tile.fan.dir.middle);
         self.packet.meet(self.scene, block, open);
         let mut open = open;
         while open != 0 {

@@ -15,23 +15,34 @@ pub(super) enum Outcome {
     Collapsed,
 }
 
+/// The ends of stretches: places, and which end of which slot (2 i or 2 i + 1).
+pub(super) type Ends = Vec<(f64, u32)>;
+
+/// The solid in a region, as a function of being inside or outside of the leaves that matter
+/// there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Logic {
+    /// For each combination one bit. The state has a bit for each leaf that one is inside of.
+    Table(u64),
+    /// All literals have to hold. The state counts those that do not.
+    All {
+        /// How many those are outside of all leaves.
+        start: u64,
+    },
+    /// One literal has to hold. The state counts those that do.
+    Any {
+        /// How many those are outside of all leaves.
+        start: u64,
+    },
+}
+
 /// With at most this many leaves the solid is a table of their states.
 pub(super) const FEW: usize = 6;
 
-/// The ends of stretches: places, and which end of which slot (2 i or 2 i + 1). Each of so few
-/// leaves has at most four.
-pub(super) type Ends = [(f64, u32); 4 * FEW];
-
-pub(super) const NO_ENDS: Ends = [(0.0, 0); 4 * FEW];
-
-/// For each combination of being inside or outside of some leaves, whether the solid is there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Table(u64);
-
-impl Table {
+impl Logic {
     /// From the answers for the numbers whose bits are the states. They are asked for in an
     /// order in which one bit differs from the one before (a Gray code).
-    pub(super) fn new(leaves: usize, mut flipped: impl FnMut(usize) -> bool) -> Self {
+    pub(super) fn table(leaves: usize, mut flipped: impl FnMut(usize) -> bool) -> Self {
         let mut table = 0;
         let mut state = 0_u32;
         for i in 0..1_u32 << leaves {
@@ -42,21 +53,44 @@ impl Table {
             }
             table |= u64::from(is_inside) << state;
         }
-        Self(table)
+        Self::Table(table)
     }
 
-    fn holds(self, state: u32) -> bool {
-        self.0 >> state & 1 == 1
+    /// What entering a leaf adds to the state, and leaving it takes away; `number` is the
+    /// leaf's in the table.
+    pub(super) fn weight(self, number: usize, complement: bool) -> u64 {
+        let rises = match self {
+            Self::Table(_) => return 1 << number,
+            Self::All { .. } => complement,
+            Self::Any { .. } => !complement,
+        };
+        // In arithmetic modulo 2⁶⁴, this is one less.
+        if rises { 1 } else { u64::MAX }
+    }
+
+    fn start(self) -> u64 {
+        match self {
+            Self::Table(_) => 0,
+            Self::All { start } | Self::Any { start } => start,
+        }
+    }
+
+    fn holds(self, state: u64) -> bool {
+        match self {
+            Self::Table(table) => table >> state & 1 == 1,
+            Self::All { .. } => state == 0,
+            Self::Any { .. } => state > 0,
+        }
     }
 }
 
 /// The changes of the solid along one ray of a block.
 pub(super) struct Walk<'a> {
-    table: Table,
+    logic: Logic,
     slots: &'a [Slot],
     ends: &'a [(f64, u32)],
     next: usize,
-    state: u32,
+    state: u64,
     inside: bool,
 }
 
@@ -75,28 +109,21 @@ pub(super) struct Step {
 impl<'a> Walk<'a> {
     /// From the start of a line. What was in `ends` does not matter.
     pub(super) fn new(
-        table: Table,
+        logic: Logic,
         slots: &'a [Slot],
         ray: usize,
         ends: &'a mut Ends,
     ) -> Self {
-        let mut count = 0;
+        ends.clear();
         for (i, slot) in (0..).zip(slots) {
             let (enter, exit) = (slot.enter[ray], slot.exit[ray]);
             if enter < exit {
-                for end in [(enter, 2 * i), (exit, 2 * i + 1)] {
-                    let mut place = count;
-                    while place > 0 && ends[place - 1].0 > end.0 {
-                        ends[place] = ends[place - 1];
-                        place -= 1;
-                    }
-                    ends[place] = end;
-                    count += 1;
-                }
+                insert(ends, (enter, 2 * i));
+                insert(ends, (exit, 2 * i + 1));
             }
         }
-        let inside = table.holds(0);
-        Self { table, slots, ends: &ends[..count], next: 0, state: 0, inside }
+        let state = logic.start();
+        Self { logic, slots, ends, next: 0, state, inside: logic.holds(state) }
     }
 
     /// The place of the next end, whatever it does to the solid.
@@ -113,10 +140,12 @@ impl Iterator for Walk<'_> {
             let first = self.next;
             #[expect(clippy::float_cmp, reason = "one place is one number")]
             while let Some(&(_, end)) = self.ends.get(self.next).filter(|e| e.0 == t) {
-                self.state ^= 1 << self.slots[end as usize / 2].candidate;
+                let weight = self.slots[end as usize / 2].weight;
+                let weight = if end % 2 == 0 { weight } else { weight.wrapping_neg() };
+                self.state = self.state.wrapping_add(weight);
                 self.next += 1;
             }
-            let enters = self.table.holds(self.state);
+            let enters = self.logic.holds(self.state);
             if enters != self.inside {
                 self.inside = enters;
                 return Some(Step { t, end, tied: self.next > first + 1, enters });
@@ -148,4 +177,16 @@ pub(super) fn first(
         }
     }
     Outcome::Nothing
+}
+
+/// Adds an end where it belongs. Leaves come about in the order in which rays meet them, so that
+/// is near the end of the list.
+fn insert(ends: &mut Ends, end: (f64, u32)) {
+    let mut place = ends.len();
+    ends.push(end);
+    while place > 0 && ends[place - 1].0 > end.0 {
+        ends[place] = ends[place - 1];
+        place -= 1;
+    }
+    ends[place] = end;
 }
