@@ -30,6 +30,8 @@ pub(super) struct Slot {
     pub(super) leaf: u32,
     /// What entering the leaf adds to the state of the solid.
     pub(super) weight: u64,
+    /// Whether the leaf has no other slot.
+    pub(super) is_alone: bool,
     pub(super) enter: Numbers,
     pub(super) exit: Numbers,
     pub(super) enter_face: Numbers,
@@ -37,9 +39,15 @@ pub(super) struct Slot {
 }
 
 impl Slot {
+    /// Whether entering the leaf leaves a solid that is all of some literals.
+    pub(super) fn is_cut(&self) -> bool {
+        self.weight == 1
+    }
+
     pub(super) const EMPTY: Self = Self {
         leaf: 0,
         weight: 0,
+        is_alone: true,
         enter: [f64::INFINITY; BLOCK],
         exit: [f64::INFINITY; BLOCK],
         enter_face: [0.0; BLOCK],

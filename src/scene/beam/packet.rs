@@ -111,8 +111,10 @@ impl Packet {
                 self.slots.push(Slot::EMPTY);
             }
             if let [first, second] = &mut self.slots[self.used..self.used + 2] {
-                (first.leaf, first.weight) = (leaf, weight);
-                (second.leaf, second.weight) = (leaf, weight);
+                for slot in [&mut *first, &mut *second] {
+                    (slot.leaf, slot.weight) = (leaf, weight);
+                    slot.is_alone = slots_of(shape, faces) == 1;
+                }
                 block.stretches(self.arch, shape, faces, wanted, [first, second]);
             }
             self.used += slots_of(shape, faces);

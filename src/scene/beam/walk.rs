@@ -115,14 +115,14 @@ impl<'a> Walk<'a> {
         ends: &'a mut Ends,
     ) -> Self {
         ends.clear();
-        for (i, slot) in (0..).zip(slots) {
-            let (enter, exit) = (slot.enter[ray], slot.exit[ray]);
-            if enter < exit {
-                insert(ends, (enter, 2 * i));
-                insert(ends, (exit, 2 * i + 1));
+        let passed = match logic {
+            Logic::All { .. } => gather_within(slots, ray, ends),
+            Logic::Table(_) | Logic::Any { .. } => {
+                slots.iter().enumerate().for_each(|(i, slot)| gather(i, slot, ray, ends));
+                0
             }
-        }
-        let state = logic.start();
+        };
+        let state = logic.start().wrapping_sub(passed);
         Self { logic, slots, ends, next: 0, state, inside: logic.holds(state) }
     }
 
@@ -179,8 +179,61 @@ pub(super) fn first(
     Outcome::Nothing
 }
 
+/// Collects the ends of the stretch in slot i.
+#[inline]
+fn gather(i: usize, slot: &Slot, ray: usize, ends: &mut Ends) {
+    let (enter, exit) = (slot.enter[ray], slot.exit[ray]);
+    if enter < exit {
+        let end = 2 * i as u32;
+        insert(ends, (enter, end));
+        insert(ends, (exit, end + 1));
+    }
+}
+
+/// Collects ends where the ray has to be inside of some leaves and outside of others, as far
+/// as they can matter: says how many of the first it has come into before that.
+///
+/// It is inside of all of the first between the last of their starts and the first of their
+/// ends; what comes before and after does not matter.
+fn gather_within(slots: &[Slot], ray: usize, ends: &mut Ends) -> u64 {
+    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+    for leaf in slots.chunk_by(|a, b| a.leaf == b.leaf).filter(|s| !s[0].is_cut()) {
+        let first = leaf.iter().map(|slot| slot.enter[ray]).fold(f64::INFINITY, f64::min);
+        let is_there = |slot: &&Slot| slot.enter[ray] < slot.exit[ray];
+        let exits = leaf.iter().filter(is_there).map(|slot| slot.exit[ray]);
+        let last = exits.fold(f64::NEG_INFINITY, f64::max);
+        (from, to) = (from.max(first), to.min(last));
+    }
+    if from >= to {
+        return 0;
+    }
+    let mut passed = 0;
+    for (i, slot) in slots.iter().enumerate() {
+        let (enter, exit) = (slot.enter[ray], slot.exit[ray]);
+        if slot.is_cut() {
+            if exit >= from && enter <= to {
+                gather(i, slot, ray, ends);
+            }
+        } else if slot.is_alone {
+            let end = 2 * i as u32;
+            if enter < from {
+                passed += 1;
+            } else {
+                insert(ends, (enter, end));
+            }
+            if exit <= to {
+                insert(ends, (exit, end + 1));
+            }
+        } else {
+            gather(i, slot, ray, ends);
+        }
+    }
+    passed
+}
+
 /// Adds an end where it belongs. Leaves come about in the order in which rays meet them, so that
 /// is near the end of the list.
+#[inline]
 fn insert(ends: &mut Ends, end: (f64, u32)) {
     let mut place = ends.len();
     ends.push(end);
