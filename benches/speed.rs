@@ -1,4 +1,4 @@
-//! How fast scenes are compiled and answer: `cargo bench`.
+//! How fast scenes answer: `cargo bench`.
 //!
 //! Times are for a whole batch; the column of items a second says what a ray or a point
 //! costs. `cargo bench -- primary` runs one group. To compare with other programs see
@@ -10,17 +10,11 @@ mod queries;
 mod scenes;
 
 use divan::counter::ItemsCount;
-use divan::{AllocProfiler, Bencher, black_box};
-use glam::DVec3;
+use divan::{Bencher, black_box};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use scenes::{FORMULAS, MESHES, Subject};
+use solidray::Scene;
 use solidray::measure::{self, Sampling};
-use solidray::render::{Frame, View, trace};
-use solidray::{Ray, Scene, Tracer};
-
-/// Counts what compiling allocates.
-#[global_allocator]
-static ALLOCATOR: AllocProfiler = AllocProfiler::system();
 
 /// The side of pictures.
 const SIZE: u32 = 1024;
@@ -53,19 +47,9 @@ fn primary<const THREADS: usize>(bencher: Bencher, name: &str) {
     let (subject, scene) = compiled(name);
     let (view, pool) = (subject.view(SIZE), threads(THREADS));
     let rays = ItemsCount::new(SIZE * SIZE);
-    bencher.counter(rays).bench_local(|| pool.install(|| normals(&scene, &view)));
-}
-
-/// Traces a picture and adds up its normals, on as many threads as there are.
-fn normals(scene: &Scene, view: &View) -> DVec3 {
-    use rayon::prelude::*;
-    let frame = trace(scene, view, [0.5; 2], &|_| ());
-    let row = |y| (0..SIZE).filter_map(|x| normal(scene, &frame, x, y)).sum::<DVec3>();
-    (0..SIZE).into_par_iter().map(row).sum()
-}
-
-fn normal(scene: &Scene, frame: &Frame, x: u32, y: u32) -> Option<DVec3> {
-    Some(scene.normal_at(&frame.ray(x, y), &frame.hit(x, y)?))
+    bencher
+        .counter(rays)
+        .bench_local(|| pool.install(|| queries::normals(&scene, &view)));
 }
 
 /// All spans of parallel rays.
@@ -76,7 +60,7 @@ fn spans(bencher: Bencher, name: &str) {
     let mut tracer = scene.tracer();
     bencher
         .counter(ItemsCount::new(rays.len()))
-        .bench_local(|| rays.iter().map(|ray| tracer.spans(ray).len()).sum::<usize>());
+        .bench_local(|| queries::spans(&mut tracer, &rays));
 }
 
 /// The first hit of single rays from all sides.
@@ -87,11 +71,7 @@ fn random(bencher: Bencher, name: &str) {
     let mut tracer = scene.tracer();
     bencher
         .counter(ItemsCount::new(rays.len()))
-        .bench_local(|| first(&mut tracer, &rays));
-}
-
-fn first(tracer: &mut Tracer<'_>, rays: &[Ray]) -> f64 {
-    rays.iter().filter_map(|ray| tracer.first_hit(ray)).map(|hit| hit.t).sum()
+        .bench_local(|| queries::first(&mut tracer, &rays));
 }
 
 /// Whether points are inside.
@@ -101,12 +81,7 @@ fn membership(bencher: Bencher, name: &str) {
     let points = queries::points(&subject.bounds, COUNT);
     bencher
         .counter(ItemsCount::new(points.len()))
-        .bench_local(|| inside(&scene, &points));
-}
-
-fn inside(scene: &Scene, points: &[DVec3]) -> usize {
-    let mut tracer = scene.tracer();
-    points.iter().filter(|&&point| tracer.contains(point)).count()
+        .bench_local(|| queries::inside(&scene, &points));
 }
 
 /// A volume to a half width of one part in ten thousand.
@@ -121,12 +96,4 @@ fn volume<const THREADS: usize>(bencher: Bencher, name: &str) {
     bencher
         .counter(ItemsCount::new(volume.rays))
         .bench_local(|| pool.install(|| measure::volume(black_box(&scene), &sampling)));
-}
-
-/// From what is said to a scene that answers.
-#[divan::bench(args = everything(), sample_count = 7, sample_size = 1)]
-fn compile(bencher: Bencher, name: &str) {
-    let solid = Subject::named(name).solid;
-    bencher
-        .bench_local(|| Scene::compile(black_box(&solid)).expect("the scene is right"));
 }

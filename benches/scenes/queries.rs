@@ -1,11 +1,39 @@
-//! What scenes are asked: rays and points that fill a space evenly, in an order that jumps
-//! about.
+//! What scenes are asked, and the ways of asking that are measured.
+//!
+//! Rays and points fill a space evenly, in an order that jumps about.
 
 use std::f64::consts::TAU;
 
 use glam::{DVec3, dvec3};
-use solidray::render::View;
-use solidray::{Aabb, Ray};
+use rayon::prelude::*;
+use solidray::render::{View, trace};
+use solidray::{Aabb, Ray, Scene, Tracer};
+
+/// Traces a picture and adds up its normals, on as many threads as there are: all that
+/// shading needs.
+pub(crate) fn normals(scene: &Scene, view: &View) -> DVec3 {
+    let frame = trace(scene, view, [0.5; 2], &|_| ());
+    let [width, height] = frame.size();
+    let normal = |(x, y)| Some(scene.normal_at(&frame.ray(x, y), &frame.hit(x, y)?));
+    let row = |y| (0..width).filter_map(|x| normal((x, y))).sum::<DVec3>();
+    (0..height).into_par_iter().map(row).sum()
+}
+
+/// Adds up where single rays first hit.
+pub(crate) fn first(tracer: &mut Tracer<'_>, rays: &[Ray]) -> f64 {
+    rays.iter().filter_map(|ray| tracer.first_hit(ray)).map(|hit| hit.t).sum()
+}
+
+/// Counts the spans of rays.
+pub(crate) fn spans(tracer: &mut Tracer<'_>, rays: &[Ray]) -> usize {
+    rays.iter().map(|ray| tracer.spans(ray).len()).sum()
+}
+
+/// Counts the points inside.
+pub(crate) fn inside(scene: &Scene, points: &[DVec3]) -> usize {
+    let mut tracer = scene.tracer();
+    points.iter().filter(|&&point| tracer.contains(point)).count()
+}
 
 /// The rays through the centres of all pixels, row by row.
 pub(crate) fn parallel(view: &View) -> Vec<Ray> {
