@@ -6,7 +6,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use glam::DVec3;
 use solidray::{Mesh, Ray};
 
@@ -16,8 +16,8 @@ pub struct Embree {
     input: PathBuf,
 }
 
-/// Nanoseconds by the names of queries.
-pub type Times = HashMap<String, f64>;
+/// Nanoseconds a ray, and how many hits or spans were found, by the names of queries.
+pub type Answers = HashMap<String, (f64, f64)>;
 
 impl Embree {
     /// Compiles the program, which needs a C compiler and Embree 3.
@@ -72,17 +72,16 @@ impl Embree {
     }
 
     /// Builds and asks once.
-    pub fn run(&self, robust: bool) -> Result<Times> {
+    pub fn run(&self, robust: bool) -> Result<Answers> {
         let how = if robust { "robust" } else { "normal" };
         let said = Command::new(&self.program).arg(&self.input).arg(how).output()?;
         ensure!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
         let text = String::from_utf8(said.stdout)?;
         text.lines()
             .map(|line| {
-                let mut words = line.split(' ');
-                let name = words.next().context("a name")?;
-                let time = words.next().context("a time")?;
-                Ok((name.to_owned(), time.parse()?))
+                let words: Vec<&str> = line.split(' ').collect();
+                let &[name, time, found] = &words[..] else { bail!("not {line}") };
+                Ok((name.to_owned(), (time.parse()?, found.parse()?)))
             })
             .collect()
     }

@@ -38,7 +38,7 @@ impl Facets {
     /// step would take more than `limit` seconds.
     pub fn time_to(&self, error: f64, exact: f64, limit: f64) -> Result<Found> {
         let mut measured: Vec<(u32, f64, f64)> = Vec::new();
-        let mut segments = 32;
+        let mut segments = 16;
         loop {
             let (seconds, volume) = self.run(segments)?;
             let now = (volume / exact - 1.0).abs();

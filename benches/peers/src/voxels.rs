@@ -1,11 +1,12 @@
 //! fidget: implicit functions, compiled at run time, drawn by voxels in single precision.
 
-use anyhow::{Result, ensure};
+use anyhow::Result;
 use fidget::context::Tree;
+use fidget::eval::{BulkEvaluator, Function};
 use fidget::jit::{JitFunction, JitShape};
 use fidget::raster::voxel::{EvalConfig, Image, RenderConfig};
 use fidget::render::VoxelSize;
-use fidget::shape::{BoundShape, Shape};
+use fidget::shape::{BoundShape, ShapeTape};
 use glam::{DAffine3, DVec3};
 use nalgebra::{Matrix4, Vector4};
 use solidray::Op;
@@ -17,13 +18,20 @@ use crate::part::{Part, radius_at};
 /// A scene as fidget takes it.
 pub struct Voxels {
     shape: JitShape,
+    /// The function for many points, compiled.
+    tape: ShapeTape<JitFloatSliceTape>,
 }
+
+type JitFloatSliceTape =
+    <<JitFunction as Function>::FloatSliceEval as BulkEvaluator>::Tape;
 
 impl Voxels {
     /// Writes a tree as a function that is negative inside.
     pub fn new(part: &Part) -> Self {
         let axes = <[Tree; 3]>::from(Tree::axes());
-        Self { shape: JitShape::from(function(part, &axes)) }
+        let shape = JitShape::from(function(part, &axes));
+        let tape = shape.float_slice_tape(Default::default());
+        Self { shape, tape }
     }
 
     /// Draws what a square view shows in a cube of voxels as wide as the view: depths and
@@ -49,13 +57,16 @@ impl Voxels {
         image.ok_or_else(|| anyhow::anyhow!("fidget was not cancelled"))
     }
 
-    /// How many points are inside.
+    /// How many points are inside, asked in pieces that stay in the cache.
     pub fn inside(&self, [x, y, z]: &[Vec<f32>; 3]) -> Result<usize> {
-        let tape = self.shape.float_slice_tape(Default::default());
-        let mut evaluator = Shape::<JitFunction>::new_float_slice_eval();
-        let values = evaluator.eval(&tape, x, y, z)?;
-        ensure!(values.len() == x.len(), "as many values as points");
-        Ok(values.iter().filter(|&&value| value < 0.0).count())
+        const PIECE: usize = 2048;
+        let mut evaluator = JitShape::new_float_slice_eval();
+        let mut inside = 0;
+        for ((x, y), z) in x.chunks(PIECE).zip(y.chunks(PIECE)).zip(z.chunks(PIECE)) {
+            let values = evaluator.eval(&self.tape, x, y, z)?;
+            inside += values.iter().filter(|&&value| value < 0.0).count();
+        }
+        Ok(inside)
     }
 }
 
