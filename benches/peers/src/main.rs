@@ -103,17 +103,17 @@ fn main() -> Result<()> {
     ];
     let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("../RESULTS.md");
     // Asked first: to write results changes the work tree.
-    let setting = setting(&run);
+    let when = when();
     for (topic, measure) in tables {
         if run.args.parts.is_empty() || run.args.parts.contains(&topic) {
             let table = measure(&run)?;
             if !run.args.dry_run {
-                table.save(&results)?;
+                table.save(&results, &when)?;
             }
         }
     }
     if !run.args.dry_run {
-        report::replace(&results, "setting", |_| setting)?;
+        report::replace(&results, "setting", |_| setting(&run))?;
     }
     Ok(())
 }
@@ -155,14 +155,28 @@ fn threads(count: usize) -> Result<ThreadPool> {
     Ok(ThreadPoolBuilder::new().num_threads(count).build()?)
 }
 
-/// What was measured, with what, on what and when.
+/// What a program prints.
+fn said(program: &str, args: &[&str]) -> String {
+    let output = Command::new(program).args(args).output().ok();
+    let text = output
+        .filter(|output| output.status.success())
+        .and_then(|output| String::from_utf8(output.stdout).ok());
+    text.map_or_else(|| "unknown".to_owned(), |text| text.trim().to_owned())
+}
+
+/// When what was measured, and how.
+fn when() -> String {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    format!(
+        "Last run on {} at commit {} with `{}`.",
+        said("date", &["+%F"]),
+        said("git", &["describe", "--always", "--dirty"]),
+        args.join(" "),
+    )
+}
+
+/// On what, and with what.
 fn setting(run: &Run) -> String {
-    let said = |program: &str, args: &[&str]| {
-        let output = Command::new(program).args(args).output().ok()?;
-        let text = String::from_utf8(output.stdout).ok()?;
-        output.status.success().then(|| text.trim().to_owned())
-    };
-    let unknown = || "unknown".to_owned();
     let cpu = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
         let line = text.lines().find(|line| line.starts_with("model name"))?;
         Some(line.split_once(':')?.1.trim().to_owned())
@@ -180,14 +194,10 @@ fn setting(run: &Run) -> String {
         facets::version(&run.args.python),
     ];
     let peers: Vec<String> = peers.into_iter().flatten().collect();
-    let args: Vec<String> = std::env::args().skip(1).collect();
     format!(
-        "Last run on {} at commit {}: `cargo run --release -- {}`, {} ({cores} cores), {}, {}.",
-        said("date", &["+%F"]).unwrap_or_else(unknown),
-        said("git", &["describe", "--always", "--dirty"]).unwrap_or_else(unknown),
-        args.join(" "),
-        cpu.unwrap_or_else(unknown),
-        said("rustc", &["--version"]).unwrap_or_else(unknown),
+        "{} ({cores} cores), {}, {}.",
+        cpu.unwrap_or_else(|| "An unknown processor".to_owned()),
+        said("rustc", &["--version"]),
         peers.join(", "),
     )
 }

@@ -26,8 +26,8 @@ impl Table {
     }
 
     /// Puts the table between its marks in a file, its rows in place of those with the same
-    /// first cell. A table without rows changes nothing.
-    pub fn save(&self, path: &Path) -> Result<()> {
+    /// first cell, and a sentence behind it. A table without rows changes nothing.
+    pub fn save(&self, path: &Path, sentence: &str) -> Result<()> {
         if self.rows.is_empty() {
             return Ok(());
         }
@@ -46,7 +46,7 @@ impl Table {
                 }
             }
             let rule = "|---".repeat(self.head.len());
-            format!("{}\n{rule}|\n{}", line(self.head), rows.join("\n"))
+            format!("{}\n{rule}|\n{}\n\n{sentence}", line(self.head), rows.join("\n"))
         })
     }
 }
