@@ -160,6 +160,14 @@ impl<S: Simd> Not for Truths<S> {
     }
 }
 
+impl<S: Simd> Truths<S> {
+    /// Whether it is true of one ray.
+    #[inline(always)]
+    pub(crate) fn any(self) -> bool {
+        self.0.first_true_m64s(self.1) < S::F64_LANES
+    }
+}
+
 impl<S: Simd> Lanes for Vector<S> {
     type Mask = Truths<S>;
 

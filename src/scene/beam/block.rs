@@ -20,7 +20,7 @@ pub(super) struct Block {
     origin: [Numbers; 3],
     dir: [Numbers; 3],
     rest: [Numbers; 3],
-    offset: Numbers,
+    pub(super) offset: Numbers,
     scale: Numbers,
 }
 
@@ -192,6 +192,19 @@ impl Block {
     }
 }
 
+impl Block {
+    /// Places on the lines of packet `i` as places on their rays.
+    #[inline(always)]
+    pub(super) fn places_on_rays<S: Simd>(
+        &self,
+        simd: S,
+        i: usize,
+        t: Vector<S>,
+    ) -> Vector<S> {
+        (load(simd, &self.offset, i) + t) * load(simd, &self.scale, i)
+    }
+}
+
 impl Slot {
     #[inline(always)]
     fn put<S: Simd>(&mut self, i: usize, stretch: Stretch<Vector<S>>) {
@@ -207,7 +220,7 @@ impl Slot {
 
 /// The numbers of packet `i`.
 #[inline(always)]
-fn load<S: Simd>(simd: S, numbers: &Numbers, i: usize) -> Vector<S> {
+pub(super) fn load<S: Simd>(simd: S, numbers: &Numbers, i: usize) -> Vector<S> {
     let (vectors, _) = S::as_simd_f64s(numbers);
     Vector(simd, vectors[i])
 }
@@ -219,7 +232,7 @@ fn load3<S: Simd>(simd: S, numbers: &[Numbers; 3], i: usize) -> Vec3<Vector<S>> 
 }
 
 #[inline(always)]
-fn store<S: Simd>(numbers: &mut Numbers, i: usize, vector: Vector<S>) {
+pub(super) fn store<S: Simd>(numbers: &mut Numbers, i: usize, vector: Vector<S>) {
     let (vectors, _) = S::as_mut_simd_f64s(numbers);
     vectors[i] = vector.1;
 }

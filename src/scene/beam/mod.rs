@@ -16,6 +16,7 @@
 
 mod block;
 mod bunch;
+mod flat;
 mod known;
 mod packet;
 mod sight;

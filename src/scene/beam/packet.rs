@@ -4,6 +4,7 @@ use glam::DVec3;
 use pulp::Arch;
 
 use super::block::{Block, Slot, slots_of};
+use super::flat::{Firsts, Lengths, is_simple};
 use super::known::Known;
 use super::survey::Candidate;
 use super::walk::{Ends, FEW, Logic, Step, Walk};
@@ -24,6 +25,8 @@ pub(super) struct Packet {
     meshes: Vec<u32>,
     logic: Option<Logic>,
     ends: Ends,
+    firsts: Box<Firsts>,
+    lengths: Box<Lengths>,
 }
 
 impl Packet {
@@ -36,6 +39,8 @@ impl Packet {
             meshes: Vec::new(),
             logic: None,
             ends: Vec::new(),
+            firsts: Box::new(Firsts::EMPTY),
+            lengths: Box::new(Lengths::EMPTY),
         }
     }
 
@@ -73,8 +78,10 @@ impl Packet {
             let holding = self.candidates.iter().filter(|c| literal(c).complement).count();
             let count = self.candidates.len();
             return Some(match program.combine(parent) {
-                Combine::All => Logic::All { start: (count - holding) as u64 },
-                Combine::Any => Logic::Any { start: holding as u64 },
+                Combine::Any if count > 1 => Logic::Any { start: holding as u64 },
+                Combine::All | Combine::Any => {
+                    Logic::All { start: (count - holding) as u64 }
+                }
             });
         }
         let few = self.candidates.len();
@@ -119,6 +126,38 @@ impl Packet {
             }
             self.used += slots_of(shape, faces);
         }
+    }
+
+    /// Where rays of a block come into the solid between two depths, if it is simple.
+    pub(super) fn firsts(
+        &mut self,
+        block: &Block,
+        wanted: u64,
+        depth: [f64; 2],
+    ) -> Option<&Firsts> {
+        let slots = &self.slots[..self.used];
+        let is_simple = matches!(self.logic, Some(Logic::All { .. })) && is_simple(slots);
+        is_simple.then(|| {
+            self.firsts.find(self.arch, block, slots, wanted, depth);
+            &*self.firsts
+        })
+    }
+
+    /// Where a ray comes into the solid, as [`Packet::firsts`] has just found.
+    pub(super) fn entered(&self, block: &Block, ray: usize) -> Crossing {
+        let (t, end) = (self.firsts.t[ray], face_of(self.firsts.end[ray]));
+        let step = Step { t, end, tied: false, enters: true };
+        crossing(&self.slots, &step, block, ray)
+    }
+
+    /// The chords of rays of a block, if the solid is simple.
+    pub(super) fn lengths(&mut self, block: &Block, wanted: u64) -> Option<&Lengths> {
+        let slots = &self.slots[..self.used];
+        let is_simple = matches!(self.logic, Some(Logic::All { .. })) && is_simple(slots);
+        is_simple.then(|| {
+            self.lengths.find(self.arch, block, slots, wanted);
+            &*self.lengths
+        })
     }
 
     /// Along a ray, if the solid is a function of few leaves.

@@ -1,6 +1,7 @@
 //! A tile of rays, divided into cells.
 
 use super::block::{BLOCK, Block};
+use super::flat::Firsts;
 use super::packet::Packet;
 use super::sight::Sight;
 use super::survey::{List, Survey};
@@ -178,7 +179,7 @@ impl<'a> TileTracer<'a> {
         let (known, leaves) = self.survey.found(list);
         self.packet.choose(self.scene, known, leaves, tile.fan.dir.middle);
         self.packet.meet(self.scene, block, open);
-        let mut open = open;
+        let mut open = self.enter_at_once(cell, open);
         while open != 0 {
             let ray = open.trailing_zeros() as usize;
             open &= open - 1;
@@ -208,6 +209,31 @@ impl<'a> TileTracer<'a> {
             self.hits[cell.block * BLOCK + ray] = hit;
             self.open[cell.block] &= !(1 << ray);
         }
+    }
+}
+
+impl TileTracer<'_> {
+    /// Finds where rays of a block come into the solid, if it is simple; says which rays have to
+    /// be walked along.
+    fn enter_at_once(&mut self, cell: &Cell, wanted: u64) -> u64 {
+        let block = &self.blocks[cell.block];
+        let Some(firsts) = self.packet.firsts(block, wanted, cell.depth) else {
+            return wanted;
+        };
+        let (mut doubt, mut entered) = (0, 0);
+        for (ray, &answer) in firsts.answer.iter().enumerate() {
+            doubt |= u64::from(answer >= Firsts::DOUBT) << ray;
+            entered |= u64::from(answer >= Firsts::ENTERED) << ray;
+        }
+        let mut open = wanted & entered & !doubt;
+        self.open[cell.block] &= !open;
+        while open != 0 {
+            let ray = open.trailing_zeros() as usize;
+            open &= open - 1;
+            let hit = self.packet.entered(block, ray);
+            self.hits[cell.block * BLOCK + ray] = Some(hit);
+        }
+        wanted & doubt
     }
 }
 
