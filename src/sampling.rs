@@ -50,7 +50,8 @@ impl Fibonacci {
     pub(crate) fn point(&self, i: u64, shift: DVec2) -> DVec2 {
         let other = (i % self.n) * self.generator % self.n;
         let point = DVec2::new(i as f64, other as f64) / self.n as f64;
-        (point + shift).fract()
+        // The integer part, which is zero or one.
+        (point + shift).map(|x| if x < 1.0 { x } else { x - 1.0 })
     }
 }
 

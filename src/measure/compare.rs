@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use super::estimate::Estimate;
 use super::lattice::{Beam, REPLICATES, Round, Sampling, Samples, Tally, rounds, student};
-use super::volume::{Chords, estimate, is_nothing};
+use super::volume::{Sum, estimate, is_nothing};
 use crate::progress::Progress;
-use crate::scene::{BunchTracer, CompileError, CompileOptions, Scene};
+use crate::scene::{BunchTracer, Chords, CompileError, CompileOptions, Scene};
 use crate::solid::Solid;
 
 /// Two solids side by side. Volumes are in cubic model units.
@@ -57,15 +57,15 @@ pub enum Verdict {
 /// The chords of the four solids that a comparison measures.
 #[derive(Default)]
 struct Tallies {
-    chords: [Chords; 4],
-    difference: Chords,
+    sums: [Sum; 4],
+    difference: Sum,
     worst: Option<Worst>,
 }
 
 impl Tally for Tallies {
     fn add(&mut self, later: Self) {
-        for (sum, chords) in self.chords.iter_mut().zip(later.chords) {
-            sum.add(chords);
+        for (sum, later) in self.sums.iter_mut().zip(later.sums) {
+            sum.add(later);
         }
         self.difference.add(later.difference);
         self.worst = longer(self.worst, later.worst);
@@ -153,37 +153,40 @@ fn both_empty() -> Comparison {
 /// what each ray finds of both differences.
 fn sample(
     tracers: &mut [BunchTracer<'_>; 4],
-    only_one: &mut Vec<Chords>,
+    only_one: &mut Vec<Sum>,
     samples: &Samples<'_>,
     tallies: &mut [Tallies; REPLICATES],
 ) {
+    let tally_of = |i: usize| usize::from(samples.replicates[i]);
     only_one.clear();
-    only_one.resize(samples.replicates.len(), Chords::default());
+    only_one.resize(samples.replicates.len(), Sum::default());
     for (solid, tracer) in tracers.iter_mut().enumerate() {
+        if solid < 2 {
+            tracer.chords(&samples.bunch, |i, chords| {
+                tallies[tally_of(i)].sums[solid].add(chords.into());
+            });
+            continue;
+        }
         tracer.spans(&samples.bunch, |i, ray, tracer| {
-            let tally = &mut tallies[usize::from(samples.replicates[i])];
-            let chords = Chords::found(tracer, ray);
-            tally.chords[solid].add(chords);
-            if solid >= 2 {
-                only_one[i].add(chords);
-                let longest = tracer
-                    .spans_found()
-                    .iter()
-                    .max_by(|s, t| s.length().total_cmp(&t.length()));
-                let found = longest.map(|span| Worst {
-                    length: span.length() * ray.speed(),
-                    from: ray.at(span.enter.t),
-                    to: ray.at(span.exit.t),
-                    in_a: solid == 2,
-                });
-                tally.worst = longer(tally.worst, found);
-            }
+            let (tally, sum) = (&mut tallies[tally_of(i)], Chords::found(tracer, ray));
+            tally.sums[solid].add(sum.into());
+            only_one[i].add(sum.into());
+            let longest = tracer
+                .spans_found()
+                .iter()
+                .max_by(|s, t| s.length().total_cmp(&t.length()));
+            let found = longest.map(|span| Worst {
+                length: span.length() * ray.speed(),
+                from: ray.at(span.enter.t),
+                to: ray.at(span.exit.t),
+                in_a: solid == 2,
+            });
+            tally.worst = longer(tally.worst, found);
         });
     }
-    for (chords, &replicate) in only_one.iter().zip(samples.replicates) {
-        let hits = chords.hits.min(1);
-        let chords = Chords { hits, ..*chords };
-        tallies[usize::from(replicate)].difference.add(chords);
+    for (i, sum) in only_one.iter().enumerate() {
+        let hits = sum.hits.min(1);
+        tallies[tally_of(i)].difference.add(Sum { hits, ..*sum });
     }
 }
 
@@ -207,7 +210,7 @@ fn summary(
         if nothing[i] {
             Estimate::exact(0.0)
         } else {
-            estimate(beam, round, rays, rel_tol, |t| t.chords[i])
+            estimate(beam, round, rays, rel_tol, |t| t.sums[i])
         }
     });
     let difference = estimate(beam, round, rays, rel_tol, |t| t.difference);
@@ -241,7 +244,7 @@ fn overlap(
     rel_tol: f64,
 ) -> Estimate {
     let ratio = |t: &Tallies| {
-        let [a, b, a_minus_b, b_minus_a] = t.chords.map(|c| c.length);
+        let [a, b, a_minus_b, b_minus_a] = t.sums.map(|s| s.chords.length);
         let (common, all) = (
             0.5 * (a + b - a_minus_b - b_minus_a),
             0.5 * (a + b + a_minus_b + b_minus_a),
@@ -251,13 +254,14 @@ fn overlap(
     let ratios: Vec<f64> = round.replicates.iter().map(ratio).collect();
     let (value, half_width) = student(&ratios);
     let union = estimate(beam, round, rays, rel_tol, |t| {
-        let [a, b, ..] = t.chords;
-        Chords {
-            length: 0.5 * (a.length + b.length + t.difference.length),
-            hits: a.hits.max(b.hits),
-            spans: a.spans + b.spans,
-            uncertain: a.uncertain + b.uncertain,
-        }
+        let [a, b, ..] = t.sums;
+        let (all, difference) = ([a, b].map(|sum| sum.chords), t.difference.chords);
+        let chords = Chords {
+            length: 0.5 * (all[0].length + all[1].length + difference.length),
+            spans: all[0].spans + all[1].spans,
+            uncertain: all[0].uncertain + all[1].uncertain,
+        };
+        Sum { chords, hits: a.hits.max(b.hits) }
     });
     let interval = if difference.resolved {
         [(value - half_width).max(0.0), (value + half_width).min(1.0)]

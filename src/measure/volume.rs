@@ -5,42 +5,29 @@ use super::lattice::{
     Beam, ENOUGH_HITS, REPLICATES, Round, Sampling, Tally, most_hits, rounds, student,
 };
 use crate::progress::Progress;
-use crate::ray::{Ray, Span};
-use crate::scene::{Scene, Tracer};
+use crate::scene::{Chords, Scene};
 
-/// Chords of one solid.
+/// The chords that many rays have in one solid.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Chords {
-    /// The sum of their lengths.
-    pub(super) length: f64,
+pub(super) struct Sum {
+    pub(super) chords: Chords,
     /// How many rays have any.
     pub(super) hits: u64,
-    /// How many there are.
-    pub(super) spans: u64,
-    /// How many of them, and of the gaps between them, are shorter than rounding.
-    pub(super) uncertain: u64,
 }
 
-impl Tally for Chords {
-    fn add(&mut self, later: Self) {
-        self.length += later.length;
-        self.hits += later.hits;
-        self.spans += later.spans;
-        self.uncertain += later.uncertain;
+impl From<Chords> for Sum {
+    /// Those of one ray.
+    fn from(chords: Chords) -> Self {
+        Self { chords, hits: u64::from(chords.length > 0.0) }
     }
 }
 
-impl Chords {
-    /// Those of a ray whose spans a tracer has just found.
-    pub(super) fn found(tracer: &Tracer<'_>, ray: &Ray) -> Self {
-        let spans = tracer.spans_found();
-        let length = spans.iter().map(Span::length).sum();
-        Self {
-            length,
-            hits: u64::from(length > 0.0),
-            spans: spans.len() as u64,
-            uncertain: tracer.uncertain(ray),
-        }
+impl Tally for Sum {
+    fn add(&mut self, later: Self) {
+        self.chords.length += later.chords.length;
+        self.chords.spans += later.chords.spans;
+        self.chords.uncertain += later.chords.uncertain;
+        self.hits += later.hits;
     }
 }
 
@@ -78,19 +65,18 @@ pub fn volume_with(
         sampling,
         progress,
         || scene.bunch_tracer(),
-        |tracer, samples, chords: &mut [Chords; REPLICATES]| {
-            tracer.spans(&samples.bunch, |i, ray, tracer| {
-                let of = usize::from(samples.replicates[i]);
-                chords[of].add(Chords::found(tracer, ray));
+        |tracer, samples, sums: &mut [Sum; REPLICATES]| {
+            tracer.chords(&samples.bunch, |i, chords| {
+                sums[usize::from(samples.replicates[i])].add(chords.into());
             });
         },
         |round, rays| {
             let hopeless = rays >= sampling.max_rays / PATIENCE
-                && round.replicates.iter().all(|chords| chords.hits == 0);
-            hopeless || estimate(&beam, round, rays, sampling.rel_tol, |c| *c).target_met
+                && round.replicates.iter().all(|sum| sum.hits == 0);
+            hopeless || estimate(&beam, round, rays, sampling.rel_tol, |sum| *sum).target_met
         },
     );
-    estimate(&beam, &round, rays, sampling.rel_tol, |chords| *chords)
+    estimate(&beam, &round, rays, sampling.rel_tol, |sum| *sum)
 }
 
 /// When no ray has met the solid after this part of the allowed rays, it is given up: the
@@ -108,7 +94,7 @@ pub(super) fn estimate<T>(
     round: &Round<T>,
     rays: u64,
     rel_tol: f64,
-    chords: impl Fn(&T) -> Chords,
+    sum: impl Fn(&T) -> Sum,
 ) -> Estimate {
     let whole_box = beam.depth() * beam.area();
     if round.size == 0 {
@@ -122,20 +108,20 @@ pub(super) fn estimate<T>(
             ..Estimate::exact(0.0)
         };
     }
-    let chords: Vec<Chords> = round.replicates.iter().map(chords).collect();
+    let sums: Vec<Sum> = round.replicates.iter().map(sum).collect();
     let per_ray = beam.area() / round.size as f64;
-    let volumes: Vec<f64> = chords.iter().map(|c| c.length * per_ray).collect();
+    let volumes: Vec<f64> = sums.iter().map(|s| s.chords.length * per_ray).collect();
     let (value, half_width) = student(&volumes);
-    let resolved = chords.iter().all(|c| c.hits >= ENOUGH_HITS);
+    let resolved = sums.iter().all(|s| s.hits >= ENOUGH_HITS);
     let interval = if resolved {
         [(value - half_width).max(0.0), value + half_width]
     } else {
-        let hits = most_hits(chords.iter().map(|c| c.hits).sum());
-        let bound = beam.depth() * per_ray * hits / chords.len() as f64;
+        let hits = most_hits(sums.iter().map(|s| s.hits).sum());
+        let bound = beam.depth() * per_ray * hits / sums.len() as f64;
         [0.0, bound.min(whole_box)]
     };
     let target_met = resolved && half_width <= rel_tol * value;
-    let count = |of: fn(&Chords) -> u64| chords.iter().map(of).sum();
+    let count = |of: fn(&Chords) -> u64| sums.iter().map(|s| of(&s.chords)).sum();
     Estimate {
         value,
         interval,

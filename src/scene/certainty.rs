@@ -1,5 +1,6 @@
 //! How sure the spans of a ray are.
 
+use super::Scene;
 use super::trace::Tracer;
 use crate::ray::Ray;
 use crate::shape::U;
@@ -16,7 +17,8 @@ impl Tracer<'_> {
     /// could have longer ones; they do not count.
     pub fn uncertain(&self, ray: &Ray) -> u64 {
         let mut count = self.collapsed;
-        let longest = self.longest_thin(ray);
+        let origin = ray.origin.abs().max_element();
+        let longest = self.scene.longest_thin(origin) / ray.dir.length_squared();
         let pieces = self.spans.windows(2).map(|pair| (pair[0].exit, pair[1].enter));
         let pieces = pieces.chain(self.spans.iter().map(|span| (span.enter, span.exit)));
         for (from, to) in pieces {
@@ -28,18 +30,20 @@ impl Tracer<'_> {
         }
         count
     }
+}
 
-    /// The square of the length, in multiples of the ray's direction, from which on pieces are
-    /// certain.
-    fn longest_thin(&self, ray: &Ray) -> f64 {
+impl Scene {
+    /// The square of the length from which on pieces of a ray are certain whose origin has no
+    /// larger coordinate than this.
+    pub(super) fn longest_thin(&self, origin: f64) -> f64 {
         /// The bound of a graze is 2.5 √(ε R) at either end; the rest is room for solids of
         /// which R is not the largest length.
         const ROOM: f64 = 16.0;
-        let bounds = self.scene.hierarchy.bounds();
+        let bounds = self.hierarchy.bounds();
         let size = bounds.size().max_element();
         let far = bounds.min.abs().max(bounds.max.abs()).max_element();
-        let far = 2.0 * far + ray.origin.abs().max_element();
-        let moved = self.scene.worst_slack + 16.0 * U * self.scene.worst_condition * far;
-        ROOM * moved * (ROOM * size) / ray.speed().powi(2)
+        let far = 2.0 * far + origin;
+        let moved = self.worst_slack + 16.0 * U * self.worst_condition * far;
+        ROOM * moved * (ROOM * size)
     }
 }

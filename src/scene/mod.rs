@@ -25,7 +25,7 @@ use crate::color::Color;
 use crate::ray::{Crossing, Ray, Sense};
 use crate::shape::{Line, Shape, Spot, inverse_power_of_two};
 use crate::solid::{Place, Solid};
-pub(crate) use beam::{Bunch, BunchTracer, SIDE, Tile, TileTracer};
+pub(crate) use beam::{Bunch, BunchTracer, Chords, SIDE, Tile, TileTracer};
 pub use classify::Membership;
 pub use compile::{CompileError, LeafName};
 pub use options::CompileOptions;

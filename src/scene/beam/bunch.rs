@@ -1,11 +1,14 @@
 //! Every span of rays that are near to one another.
 
+use glam::DVec3;
+
 use super::block::{BLOCK, Block};
+use super::flat::Lengths;
 use super::packet::Packet;
 use super::sight::Sight;
-use super::survey::Survey;
+use super::survey::{List, Survey};
 use crate::fan::Fan;
-use crate::ray::Ray;
+use crate::ray::{Ray, Span};
 use crate::scene::{Scene, Tracer};
 
 /// Rays of a fan at places in a rectangle.
@@ -44,49 +47,144 @@ impl<'a> BunchTracer<'a> {
         bunch: &Bunch<'_>,
         mut visit: impl FnMut(usize, &Ray, &Tracer<'a>),
     ) {
-        let Bunch { fan, corners, places } = *bunch;
-        if !self.scene.bounds.is_bounded() {
+        let Some((_, all)) = self.look_at(bunch) else {
             return;
-        }
-        let sight = Sight::new(fan, corners, self.scene);
-        let region = sight.region(corners, sight.depth);
-        let all = self.survey.all(&region);
-        if let Some(list) = self.survey.enter(&region, &all) {
-            let (known, leaves) = self.survey.found(&list);
-            self.packet.choose(self.scene, known, leaves, region.along());
-            for (first, places) in (0..).step_by(BLOCK).zip(places.chunks(BLOCK)) {
-                self.trace(fan, places, |i, ray, tracer| visit(first + i, ray, tracer));
+        };
+        for (first, places) in blocks(bunch.places) {
+            let mut open = self.meet(bunch.fan, places);
+            while let Some(i) = next(&mut open) {
+                let ray = bunch.fan.ray(places[i][0], places[i][1]);
+                self.walk(i);
+                visit(first + i, &ray, &self.tracer);
             }
         }
         self.survey.leave(&all);
     }
 
-    /// The same for the rays of one block.
-    fn trace(
+    /// Calls `visit` with the number of each ray that may meet the solid and its chords.
+    pub(crate) fn chords(
         &mut self,
-        fan: &Fan,
-        places: &[[f64; 2]],
-        mut visit: impl FnMut(usize, &Ray, &Tracer<'a>),
+        bunch: &Bunch<'_>,
+        mut visit: impl FnMut(usize, Chords),
     ) {
-        let Self { scene, block, packet, tracer, survey } = self;
+        let Some((sight, all)) = self.look_at(bunch) else {
+            return;
+        };
+        let slowest = slowest(bunch);
+        let thin = self.scene.longest_thin(sight.reach) / (slowest * slowest);
+        for (first, places) in blocks(bunch.places) {
+            let wanted = self.meet(bunch.fan, places);
+            let lengths = self.packet.lengths(&self.block, wanted);
+            let mut doubt = wanted;
+            if let Some(Lengths { length, count, thinnest }) = lengths {
+                let mut open = wanted;
+                while let Some(i) = next(&mut open) {
+                    if thinnest[i] > thin {
+                        doubt &= !(1 << i);
+                        let (length, spans) = (length[i], whole(count[i]));
+                        visit(first + i, Chords { length, spans, uncertain: 0 });
+                    }
+                }
+            }
+            while let Some(i) = next(&mut doubt) {
+                let ray = bunch.fan.ray(places[i][0], places[i][1]);
+                self.walk(i);
+                visit(first + i, Chords::found(&self.tracer, &ray));
+            }
+        }
+        self.survey.leave(&all);
+    }
+
+    /// Finds the leaves that matter to a bunch; nothing if it does not meet the solid. To be
+    /// followed by leaving what has been looked at.
+    fn look_at<'b>(&mut self, bunch: &Bunch<'b>) -> Option<(Sight<'b>, List)> {
+        if !self.scene.bounds.is_bounded() {
+            return None;
+        }
+        let sight = Sight::new(bunch.fan, bunch.corners, self.scene);
+        let region = sight.region(bunch.corners, sight.depth);
+        let all = self.survey.all(&region);
+        let Some(list) = self.survey.enter(&region, &all) else {
+            self.survey.leave(&all);
+            return None;
+        };
+        let (known, leaves) = self.survey.found(&list);
+        self.packet.choose(self.scene, known, leaves, region.along());
+        Some((sight, all))
+    }
+
+    /// Finds where rays of a block are inside the leaves; says which rays may meet the solid.
+    fn meet(&mut self, fan: &Fan, places: &[[f64; 2]]) -> u64 {
         for (i, &[right, up]) in places.iter().enumerate() {
-            block.set_ray(i, &fan.ray(right, up));
+            self.block.set_ray(i, &fan.ray(right, up));
         }
         let wanted = u64::MAX >> (BLOCK - places.len());
-        let mut open = wanted & block.make_lines(packet.arch, &scene.bounds);
-        packet.meet(scene, block, open);
-        while open != 0 {
-            let i = open.trailing_zeros() as usize;
-            open &= open - 1;
-            let [right, up] = places[i];
-            let ray = fan.ray(right, up);
-            if !packet.spans_by_walk(block, i, tracer) {
-                let line = block.line(i);
-                tracer.spans_among(&mut survey.known.counts, &line, |events| {
-                    packet.add_events(scene, &line, i, events);
-                });
-            }
-            visit(i, &ray, tracer);
+        let wanted =
+            wanted & self.block.make_lines(self.packet.arch, &self.scene.bounds);
+        self.packet.meet(self.scene, &self.block, wanted);
+        wanted
+    }
+
+    /// Has the tracer know the spans of a ray of the block.
+    fn walk(&mut self, i: usize) {
+        let Self { scene, survey, block, packet, tracer } = self;
+        if !packet.spans_by_walk(block, i, tracer) {
+            let line = block.line(i);
+            tracer.spans_among(&mut survey.known.counts, &line, |events| {
+                packet.add_events(scene, &line, i, events);
+            });
         }
     }
+}
+
+/// The chords of one ray.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Chords {
+    /// The sum of their lengths, in steps of the ray.
+    pub(crate) length: f64,
+    /// How many there are.
+    pub(crate) spans: u64,
+    /// How many of them, and of the gaps between them, are shorter than rounding.
+    pub(crate) uncertain: u64,
+}
+
+impl Chords {
+    /// Those of a ray whose spans a tracer has just found.
+    pub(crate) fn found(tracer: &Tracer<'_>, ray: &Ray) -> Self {
+        let spans = tracer.spans_found();
+        Self {
+            length: spans.iter().map(Span::length).sum(),
+            spans: spans.len() as u64,
+            uncertain: tracer.uncertain(ray),
+        }
+    }
+}
+
+/// The places block by block, with the number of the first of each.
+fn blocks<'a>(places: &'a [[f64; 2]]) -> impl Iterator<Item = (usize, &'a [[f64; 2]])> {
+    (0..).step_by(BLOCK).zip(places.chunks(BLOCK))
+}
+
+/// The number of the lowest bit, which is taken away.
+fn next(bits: &mut u64) -> Option<usize> {
+    let lowest = (*bits != 0).then(|| bits.trailing_zeros() as usize);
+    *bits &= bits.wrapping_sub(1);
+    lowest
+}
+
+/// A length that no direction of the rays of a bunch is shorter than.
+fn slowest(bunch: &Bunch<'_>) -> f64 {
+    let dir = &bunch.fan.dir;
+    // Directions differ across, if at all, by what does not make them shorter along.
+    let along = dir.right.cross(dir.up).normalize_or_zero();
+    if along == DVec3::ZERO { dir.middle.length() } else { dir.middle.dot(along).abs() }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "counts are whole and small"
+)]
+fn whole(count: f64) -> u64 {
+    count as u64
 }

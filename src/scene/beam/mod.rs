@@ -26,5 +26,5 @@ mod tests;
 mod tile;
 mod walk;
 
-pub(crate) use bunch::{Bunch, BunchTracer};
+pub(crate) use bunch::{Bunch, BunchTracer, Chords};
 pub(crate) use tile::{SIDE, Tile, TileTracer};

@@ -13,7 +13,7 @@ pub(super) struct Sight<'a> {
     /// Between which `t` of all its rays the solid is.
     pub(super) depth: [f64; 2],
     /// No coordinate is larger.
-    reach: f64,
+    pub(super) reach: f64,
 }
 
 impl<'a> Sight<'a> {
