@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use super::estimate::Estimate;
-use super::lattice::{Beam, REPLICATES, Round, Sampling, Samples, Tally, rounds, student};
+use super::lattice::{
+    Beam, REPLICATES, Round, Samples, Sampling, Tally, rounds, student,
+};
 use super::volume::{Sum, estimate, is_nothing};
 use crate::progress::Progress;
 use crate::scene::{BunchTracer, Chords, CompileError, CompileOptions, Scene};

@@ -73,7 +73,8 @@ pub fn volume_with(
         |round, rays| {
             let hopeless = rays >= sampling.max_rays / PATIENCE
                 && round.replicates.iter().all(|sum| sum.hits == 0);
-            hopeless || estimate(&beam, round, rays, sampling.rel_tol, |sum| *sum).target_met
+            hopeless
+                || estimate(&beam, round, rays, sampling.rel_tol, |sum| *sum).target_met
         },
     );
     estimate(&beam, &round, rays, sampling.rel_tol, |sum| *sum)

@@ -71,7 +71,7 @@ impl<'a> Tracer<'a> {
         self.clear();
         if let Some(line) = Line::new(ray, &self.scene.bounds) {
             self.gather(&line);
-            self.sweep(&line);
+            self.sweep(&line, [f64::NEG_INFINITY, f64::INFINITY]);
             debug_assert!(self.counts == self.scene.far_away, "the counters are back");
         }
         &self.spans
@@ -108,7 +108,7 @@ impl<'a> Tracer<'a> {
 
     /// Walks along the line, toggling all leaves that are crossed at one place before
     /// looking whether the solid was entered or left there.
-    fn sweep(&mut self, line: &Line) {
+    fn sweep(&mut self, line: &Line, within: [f64; 2]) {
         let mut entered = None;
         let mut from = 0;
         while from < self.events.len() {
@@ -116,7 +116,9 @@ impl<'a> Tracer<'a> {
             from = group.end;
             if let Some((Event { t, leaf, face, .. }, sense)) = self.pass(group) {
                 let crossing = Crossing { t: line.on_ray(t), leaf, face, sense };
-                self.change(&mut entered, crossing);
+                if is_within(crossing.t, within) {
+                    self.change(&mut entered, crossing);
+                }
             }
         }
         debug_assert!(entered.is_none(), "every leaf is left as often as it is entered");
@@ -140,12 +142,14 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// As [`Tracer::spans`], if only some leaves need to be looked at, with whose crossings a
-    /// list is filled, and the counters of the others are given.
+    /// As [`Tracer::spans`], if all of them are between two places of the ray and only some
+    /// leaves need to be looked at there, with whose crossings a list is filled, and the
+    /// counters of the others are given.
     pub(super) fn spans_among(
         &mut self,
         counts: &mut Vec<u32>,
         line: &Line,
+        within: [f64; 2],
         fill: impl FnOnce(&mut Vec<Event>),
     ) {
         self.clear();
@@ -153,7 +157,7 @@ impl<'a> Tracer<'a> {
         fill(&mut self.events);
         self.events.sort_unstable_by(in_order);
         std::mem::swap(&mut self.counts, counts);
-        self.sweep(line);
+        self.sweep(line, within);
         std::mem::swap(&mut self.counts, counts);
     }
 
@@ -328,6 +332,11 @@ impl<'a> Tracer<'a> {
             .find(|(event, followed)| **followed && is_owner(event))
             .map_or(events[0], |(event, _)| *event)
     }
+}
+
+/// Whether a place is between two, of which one that is not a number sets no limit.
+pub(super) fn is_within(t: f64, [near, far]: [f64; 2]) -> bool {
+    !(t < near || t > far)
 }
 
 /// By place, then in the order of the tree.

@@ -1,6 +1,7 @@
 //! Every span of rays that are near to one another.
 
 use glam::DVec3;
+use pulp::Arch;
 
 use super::block::{BLOCK, Block};
 use super::flat::Lengths;
@@ -31,11 +32,16 @@ pub(crate) struct BunchTracer<'a> {
 
 impl<'a> BunchTracer<'a> {
     pub(crate) fn new(scene: &'a Scene) -> Self {
+        Self::on(Arch::new(), scene)
+    }
+
+    /// On a machine with some vectors.
+    pub(super) fn on(arch: Arch, scene: &'a Scene) -> Self {
         Self {
             scene,
             survey: Survey::new(scene),
             block: Box::new(Block::EMPTY),
-            packet: Packet::new(),
+            packet: Packet::new(arch),
             tracer: scene.tracer(),
         }
     }
@@ -47,14 +53,14 @@ impl<'a> BunchTracer<'a> {
         bunch: &Bunch<'_>,
         mut visit: impl FnMut(usize, &Ray, &Tracer<'a>),
     ) {
-        let Some((_, all)) = self.look_at(bunch) else {
+        let Some((sight, all)) = self.look_at(bunch) else {
             return;
         };
         for (first, places) in blocks(bunch.places) {
             let mut open = self.meet(bunch.fan, places);
             while let Some(i) = next(&mut open) {
                 let ray = bunch.fan.ray(places[i][0], places[i][1]);
-                self.walk(i);
+                self.walk(i, sight.depth);
                 visit(first + i, &ray, &self.tracer);
             }
         }
@@ -74,7 +80,7 @@ impl<'a> BunchTracer<'a> {
         let thin = self.scene.longest_thin(sight.reach) / (slowest * slowest);
         for (first, places) in blocks(bunch.places) {
             let wanted = self.meet(bunch.fan, places);
-            let lengths = self.packet.lengths(&self.block, wanted);
+            let lengths = self.packet.lengths(&self.block, wanted, sight.depth);
             let mut doubt = wanted;
             if let Some(Lengths { length, count, thinnest }) = lengths {
                 let mut open = wanted;
@@ -88,7 +94,7 @@ impl<'a> BunchTracer<'a> {
             }
             while let Some(i) = next(&mut doubt) {
                 let ray = bunch.fan.ray(places[i][0], places[i][1]);
-                self.walk(i);
+                self.walk(i, sight.depth);
                 visit(first + i, Chords::found(&self.tracer, &ray));
             }
         }
@@ -119,18 +125,17 @@ impl<'a> BunchTracer<'a> {
             self.block.set_ray(i, &fan.ray(right, up));
         }
         let wanted = u64::MAX >> (BLOCK - places.len());
-        let wanted =
-            wanted & self.block.make_lines(self.packet.arch, &self.scene.bounds);
+        let wanted = wanted & self.block.make_lines(self.packet.arch, &self.scene.bounds);
         self.packet.meet(self.scene, &self.block, wanted);
         wanted
     }
 
-    /// Has the tracer know the spans of a ray of the block.
-    fn walk(&mut self, i: usize) {
+    /// Has the tracer know the spans of a ray of the block, which are between two depths.
+    fn walk(&mut self, i: usize, depth: [f64; 2]) {
         let Self { scene, survey, block, packet, tracer } = self;
-        if !packet.spans_by_walk(block, i, tracer) {
+        if !packet.spans_by_walk(block, i, depth, tracer) {
             let line = block.line(i);
-            tracer.spans_among(&mut survey.known.counts, &line, |events| {
+            tracer.spans_among(&mut survey.known.counts, &line, depth, |events| {
                 packet.add_events(scene, &line, i, events);
             });
         }

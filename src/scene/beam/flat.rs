@@ -70,9 +70,16 @@ impl Lengths {
     pub(super) const EMPTY: Self =
         Self { length: [0.0; BLOCK], count: [0.0; BLOCK], thinnest: [0.0; BLOCK] };
 
-    /// Finds them for the rays that are wanted, and perhaps some more.
-    pub(super) fn find(&mut self, arch: Arch, block: &Block, slots: &[Slot], wanted: u64) {
-        arch.dispatch(FindLengths { lengths: self, block, slots, wanted });
+    /// Finds them between two depths for the rays that are wanted, and perhaps some more.
+    pub(super) fn find(
+        &mut self,
+        arch: Arch,
+        block: &Block,
+        slots: &[Slot],
+        wanted: u64,
+        depth: [f64; 2],
+    ) {
+        arch.dispatch(FindLengths { lengths: self, block, slots, wanted, depth });
     }
 }
 
@@ -139,8 +146,7 @@ impl WithSimd for FindFirsts<'_> {
             let sure = here.equal(one) & !place.less(like.same(low));
             let [nothing, entered, doubt] =
                 [Firsts::NOTHING, Firsts::ENTERED, Firsts::DOUBT];
-            let answer =
-                Vector::select(sure, like.same(entered), like.same(doubt));
+            let answer = Vector::select(sure, like.same(entered), like.same(doubt));
             let answer = Vector::select(comes, answer, like.same(nothing));
             store(&mut firsts.t, i, t);
             store(&mut firsts.end, i, end);
@@ -154,6 +160,7 @@ struct FindLengths<'a> {
     block: &'a Block,
     slots: &'a [Slot],
     wanted: u64,
+    depth: [f64; 2],
 }
 
 impl WithSimd for FindLengths<'_> {
@@ -161,7 +168,7 @@ impl WithSimd for FindLengths<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { lengths, block, slots, wanted } = self;
+        let Self { lengths, block, slots, wanted, depth: [low, high] } = self;
         for i in 0..BLOCK / S::F64_LANES {
             if wanted >> (i * S::F64_LANES) & (u64::MAX >> (64 - S::F64_LANES)) == 0 {
                 continue;
@@ -202,9 +209,10 @@ impl WithSimd for FindLengths<'_> {
             let (mut at, mut left) = (from, -never);
             for k in 0..=cuts {
                 let until = if k < cuts { enters[k].min(to) } else { to };
-                let is_span = at.less(until);
                 let enter = block.places_on_rays(simd, i, at);
                 let exit = block.places_on_rays(simd, i, until);
+                let outside = enter.less(like.same(low)) | like.same(high).less(exit);
+                let is_span = at.less(until) & !outside;
                 let (span, gap) = (exit - enter, enter - left);
                 length = length + Vector::select(is_span, span, zero);
                 count = count + Vector::select(is_span, one, zero);

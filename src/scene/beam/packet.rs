@@ -10,6 +10,7 @@ use super::survey::Candidate;
 use super::walk::{Ends, FEW, Logic, Step, Walk};
 use crate::ray::{Crossing, Sense};
 use crate::scene::program::Combine;
+use crate::scene::trace::is_within;
 use crate::scene::{Scene, Tracer};
 use crate::shape::{ALL, Event, Line, Shape, Sink, face_of};
 
@@ -30,9 +31,9 @@ pub(super) struct Packet {
 }
 
 impl Packet {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(arch: Arch) -> Self {
         Self {
-            arch: Arch::new(),
+            arch,
             candidates: Vec::new(),
             slots: Vec::new(),
             used: 0,
@@ -75,7 +76,8 @@ impl Packet {
         let literal = |c: &Candidate| literals[c.leaf as usize];
         let parent = literal(self.candidates.first()?).parent;
         if self.candidates.iter().all(|c| literal(c).parent == parent) {
-            let holding = self.candidates.iter().filter(|c| literal(c).complement).count();
+            let holding =
+                self.candidates.iter().filter(|c| literal(c).complement).count();
             let count = self.candidates.len();
             return Some(match program.combine(parent) {
                 Combine::Any if count > 1 => Logic::Any { start: holding as u64 },
@@ -150,12 +152,18 @@ impl Packet {
         crossing(&self.slots, &step, block, ray)
     }
 
-    /// The chords of rays of a block, if the solid is simple.
-    pub(super) fn lengths(&mut self, block: &Block, wanted: u64) -> Option<&Lengths> {
+    /// The chords of rays of a block, which are between two places of each, if the solid is
+    /// simple.
+    pub(super) fn lengths(
+        &mut self,
+        block: &Block,
+        wanted: u64,
+        within: [f64; 2],
+    ) -> Option<&Lengths> {
         let slots = &self.slots[..self.used];
         let is_simple = matches!(self.logic, Some(Logic::All { .. })) && is_simple(slots);
         is_simple.then(|| {
-            self.lengths.find(self.arch, block, slots, wanted);
+            self.lengths.find(self.arch, block, slots, wanted, within);
             &*self.lengths
         })
     }
@@ -166,12 +174,13 @@ impl Packet {
         self.logic.map(|logic| Walk::new(logic, slots, ray, &mut self.ends))
     }
 
-    /// Has a tracer know the spans of a ray of a block by walking along it; says whether that
-    /// was possible.
+    /// Has a tracer know the spans of a ray of a block, which are between two places of it, by
+    /// walking along it; says whether that was possible.
     pub(super) fn spans_by_walk(
         &mut self,
         block: &Block,
         ray: usize,
+        within: [f64; 2],
         tracer: &mut Tracer<'_>,
     ) -> bool {
         let Some(logic) = self.logic else {
@@ -184,7 +193,9 @@ impl Packet {
                 return false;
             }
             let crossing = crossing(&self.slots, &step, block, ray);
-            tracer.change(&mut entered, crossing);
+            if is_within(crossing.t, within) {
+                tracer.change(&mut entered, crossing);
+            }
         }
         true
     }
@@ -219,12 +230,7 @@ impl Packet {
     }
 }
 
-fn crossing(
-    slots: &[Slot],
-    step: &Step,
-    block: &Block,
-    ray: usize,
-) -> Crossing {
+fn crossing(slots: &[Slot], step: &Step, block: &Block, ray: usize) -> Crossing {
     let slot = &slots[step.end as usize / 2];
     let leaves = step.end % 2 == 1;
     let face = if leaves { slot.exit_face[ray] } else { slot.enter_face[ray] };

@@ -23,7 +23,8 @@ impl<'a> Sight<'a> {
         let across = steps.right.cross(steps.up);
         let axis = across / across.dot(fan.dir.middle);
         let bounds = &scene.bounds;
-        let depths = bounds.corners().map(|corner| (corner - fan.origin.middle).dot(axis));
+        let depths =
+            bounds.corners().map(|corner| (corner - fan.origin.middle).dot(axis));
         let near = depths.into_iter().fold(f64::INFINITY, f64::min);
         let far = depths.into_iter().fold(f64::NEG_INFINITY, f64::max);
         // Crossings are a little beside the bounds where rounding has put them there.

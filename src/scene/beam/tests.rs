@@ -1,18 +1,22 @@
 //! Tiles answer as rays do that are traced one by one, to the last bit.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
+use proptest::collection::vec;
 use proptest::prelude::*;
+use pulp::Arch;
 
-use super::Tile;
+use super::{Bunch, BunchTracer, Chords, Tile, TileTracer};
 use crate::fan::{Fan, Linear};
+use crate::op::Op;
+use crate::ray::{Crossing, Span};
 use crate::scene::Scene;
 
 #[expect(dead_code, reason = "other tests need more of it")]
 #[path = "../../../tests/support/mod.rs"]
 mod support;
 
-use support::model::Model;
-use support::strategies::{coordinate, direction, length, model, place};
+use support::model::{Leaf, Model};
+use support::strategies::{coordinate, direction, length, model, op, place, placed_leaf};
 
 /// A fan and the step from a ray to the next, such that rays often are on lattices. Its middle
 /// ray goes through the origin.
@@ -23,7 +27,11 @@ fn fans() -> impl Strategy<Value = (Fan, [f64; 2])> {
         Just([DVec3::new(1.0, -1.0, 0.0), DVec3::Z, DVec3::new(-1.0, -1.0, 0.0)]),
         (direction(), direction()).prop_map(|(forward, other)| {
             let right = forward.cross(other);
-            let right = if right.length() < 0.1 { forward.any_orthogonal_vector() } else { right };
+            let right = if right.length() < 0.1 {
+                forward.any_orthogonal_vector()
+            } else {
+                right
+            };
             [right, right.cross(forward), forward]
         }),
     ];
@@ -42,43 +50,128 @@ fn fans() -> impl Strategy<Value = (Fan, [f64; 2])> {
     )
 }
 
+/// With the machine's vectors and without.
+fn arches() -> [Arch; 2] {
+    [Arch::new(), Arch::Scalar]
+}
+
 fn assert_same_hits(scene: &Scene, fan: &Fan, step: [f64; 2], size: [usize; 2]) {
-    let at = |i: usize, j: usize| {
-        [(i as f64 - 16.0) * step[0], (16.0 - j as f64) * step[1]]
-    };
+    let at =
+        |i: usize, j: usize| [(i as f64 - 16.0) * step[0], (16.0 - j as f64) * step[1]];
     let tile = Tile { fan, size, at: &at };
-    let (mut tiles, mut alone) = (scene.tile_tracer(), scene.tracer());
-    let mut rays = 0;
-    // Twice, for scratch memory is used again.
-    for _ in 0..2 {
-        tiles.first_hits(&tile, |i, j, hit| {
-            let [right, up] = at(i, j);
-            let ray = fan.ray(right, up);
-            let expected = alone.first_hit(&ray);
-            let bits = |hit: Option<crate::Crossing>| hit.map(|hit| hit.t.to_bits());
-            assert_eq!(hit, expected, "{ray:?}");
-            assert_eq!(bits(hit), bits(expected), "{ray:?}");
-            rays += 1;
-        });
+    let mut alone = scene.tracer();
+    for arch in arches() {
+        let mut tiles = TileTracer::on(arch, scene);
+        // Twice, for scratch memory is used again.
+        for _ in 0..2 {
+            let mut rays = 0;
+            tiles.first_hits(&tile, |i, j, hit| {
+                let [right, up] = at(i, j);
+                let ray = fan.ray(right, up);
+                let expected = alone.first_hit(&ray);
+                let bits = |hit: Option<Crossing>| hit.map(|hit| hit.t.to_bits());
+                assert_eq!(hit, expected, "{ray:?}");
+                assert_eq!(bits(hit), bits(expected), "{ray:?}");
+                rays += 1;
+            });
+            assert_eq!(rays, size[0] * size[1]);
+        }
     }
-    assert_eq!(rays, 2 * size[0] * size[1]);
+}
+
+fn assert_same_spans(scene: &Scene, fan: &Fan, step: [f64; 2], size: [usize; 2]) {
+    let at = |i: usize, j: usize| [i as f64 * step[0], j as f64 * step[1]];
+    let places: Vec<[f64; 2]> =
+        (0..size[1]).flat_map(|j| (0..size[0]).map(move |i| at(i, j))).collect();
+    let corners = [at(0, 0), at(size[0] - 1, size[1] - 1)];
+    let bunch = Bunch { fan, corners, places: &places };
+    let mut alone = scene.tracer();
+    let expected: Vec<(Vec<Span>, Chords)> = places
+        .iter()
+        .map(|&[right, up]| {
+            let ray = fan.ray(right, up);
+            let spans = alone.spans(&ray).to_vec();
+            (spans, Chords::found(&alone, &ray))
+        })
+        .collect();
+    let bits = |spans: &[Span]| -> Vec<[u64; 2]> {
+        spans.iter().map(|s| [s.enter.t.to_bits(), s.exit.t.to_bits()]).collect()
+    };
+    for arch in arches() {
+        let mut bunches = BunchTracer::on(arch, scene);
+        for _ in 0..2 {
+            let mut found = vec![(Vec::new(), Chords::default()); places.len()];
+            bunches.spans(&bunch, |i, ray, tracer| {
+                found[i] = (tracer.spans_found().to_vec(), Chords::found(tracer, ray));
+            });
+            for (i, (found, expected)) in found.iter().zip(&expected).enumerate() {
+                assert_eq!(found, expected, "{:?}", fan.ray(places[i][0], places[i][1]));
+                assert_eq!(bits(&found.0), bits(&expected.0));
+            }
+            let mut found = vec![Chords::default(); places.len()];
+            bunches.chords(&bunch, |i, chords| found[i] = chords);
+            for (i, (found, (_, expected))) in found.iter().zip(&expected).enumerate() {
+                assert_eq!(found, expected, "{:?}", fan.ray(places[i][0], places[i][1]));
+            }
+        }
+    }
 }
 
 fn compiled(model: &Model) -> Scene {
     Scene::compile(&model.solid()).expect("a sound solid")
 }
 
+/// A fan whose middle ray goes through a feature of a model, or by it.
+fn aimed(fan: &Fan, model: &Model, at: usize, aside: DVec3) -> Fan {
+    let features = model.features();
+    let at = features[at % features.len()].point + 0.125 * aside;
+    let origin = Linear { middle: fan.origin.middle + at, ..fan.origin };
+    Fan { origin, ..*fan }
+}
+
+/// A model of dozens of leaves: copies of a small one here and there, joined, or taken away from
+/// a box.
+fn crowd() -> impl Strategy<Value = Model> {
+    (placed_leaf(), vec(place(), 10..60), any::<bool>(), op(), placed_leaf()).prop_map(
+        |(leaf, places, taken, op, other)| {
+            let small = |at: &DVec3| {
+                let map = DAffine3::from_scale(DVec3::splat(0.25));
+                leaf.clone().mapped(DAffine3::from_translation(*at) * map)
+            };
+            let copies = places.iter().map(small);
+            let copies = if taken {
+                let block =
+                    Leaf::Cuboid { min: -DVec3::splat(3.0), max: DVec3::splat(3.0) };
+                let block = Model::Leaf(block);
+                Model::boolean(Op::Difference, [block].into_iter().chain(copies))
+            } else {
+                Model::boolean(Op::Union, copies)
+            };
+            Model::boolean(op, [copies, other])
+        },
+    )
+}
+
 proptest! {
     #[test]
     fn tiles_hit_what_rays_hit(
-        model in model(),
+        model in prop_oneof![3 => model(), 1 => crowd()],
         (fan, step) in fans(),
         (at, aside) in (0..1000_usize, place()),
         size in [1..=32_usize, 1..=32_usize],
     ) {
-        let features = model.features();
-        let at = features[at % features.len()].point + 0.125 * aside;
-        let origin = Linear { middle: fan.origin.middle + at, ..fan.origin };
-        assert_same_hits(&compiled(&model), &Fan { origin, ..fan }, step, size);
+        let fan = aimed(&fan, &model, at, aside);
+        assert_same_hits(&compiled(&model), &fan, step, size);
+    }
+
+    #[test]
+    fn bunches_find_what_rays_find(
+        model in prop_oneof![3 => model(), 1 => crowd()],
+        (fan, step) in fans(),
+        (at, aside) in (0..1000_usize, place()),
+        size in [1..=12_usize, 1..=12_usize],
+    ) {
+        let fan = aimed(&fan, &model, at, aside);
+        assert_same_spans(&compiled(&model), &fan, step, size);
     }
 }

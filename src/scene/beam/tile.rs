@@ -1,5 +1,7 @@
 //! A tile of rays, divided into cells.
 
+use pulp::Arch;
+
 use super::block::{BLOCK, Block};
 use super::flat::Firsts;
 use super::packet::Packet;
@@ -67,6 +69,11 @@ struct Cell {
 
 impl<'a> TileTracer<'a> {
     pub(crate) fn new(scene: &'a Scene) -> Self {
+        Self::on(Arch::new(), scene)
+    }
+
+    /// On a machine with some vectors.
+    pub(super) fn on(arch: Arch, scene: &'a Scene) -> Self {
         Self {
             scene,
             survey: Survey::new(scene),
@@ -74,7 +81,7 @@ impl<'a> TileTracer<'a> {
             open: [0; BLOCKS],
             has_lines: 0,
             hits: vec![None; BLOCKS * BLOCK],
-            packet: Packet::new(),
+            packet: Packet::new(arch),
             many: scene.tracer(),
             alone: scene.tracer(),
         }
@@ -113,7 +120,8 @@ impl<'a> TileTracer<'a> {
             for ray in (0..BLOCK).filter(|ray| wanted >> ray & 1 == 1) {
                 self.blocks[block].set_ray(ray, &tile.ray_of(block, ray));
             }
-            let valid = self.blocks[block].make_lines(self.packet.arch, &self.scene.bounds);
+            let valid =
+                self.blocks[block].make_lines(self.packet.arch, &self.scene.bounds);
             self.open[block] &= valid;
         }
     }
@@ -248,7 +256,8 @@ impl Tile<'_> {
     /// The places of the first and the last of some rays, counted from a block.
     fn corners(&self, block: usize, side: usize) -> [[f64; 2]; 2] {
         let [i, j] = block_place(block);
-        let last = |first: usize, size: usize| (first + side).min(size).max(first + 1) - 1;
+        let last =
+            |first: usize, size: usize| (first + side).min(size).max(first + 1) - 1;
         let [width, height] = self.size;
         [(self.at)(i, j), (self.at)(last(i, width), last(j, height))]
     }
