@@ -128,6 +128,29 @@ impl Bvh {
         self.meeting(|bounds| !bounds.intersection(*place).is_empty(), visit);
     }
 
+    /// Calls `visit` with each item at an end whose box holds a point between these corners.
+    pub(crate) fn holding(&self, low: DVec3, high: DVec3, mut visit: impl FnMut(u32)) {
+        if self.items.is_empty() {
+            return;
+        }
+        let (mut later, mut waiting) = ([0_u32; STACK], 1);
+        while waiting > 0 {
+            waiting -= 1;
+            let Node { bounds, first, count } = &self.nodes[later[waiting] as usize];
+            if low.cmpgt(bounds.max).any() || high.cmplt(bounds.min).any() {
+                continue;
+            }
+            if *count > 0 {
+                let (first, count) = (*first as usize, *count as usize);
+                self.items[first..][..count].iter().for_each(|&i| visit(i));
+            } else {
+                later[waiting] = first + 1;
+                later[waiting + 1] = *first;
+                waiting += 2;
+            }
+        }
+    }
+
     /// Calls `visit` with each item at an end whose box, as all those around it, has a
     /// property.
     pub(crate) fn meeting(

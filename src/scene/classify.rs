@@ -51,8 +51,11 @@ impl Tracer<'_> {
     /// face that two leaves share is inside, and one on a face that is buried in another
     /// leaf too.
     pub fn classify(&mut self, point: DVec3) -> Membership {
+        if let Some(inside) = self.certain_of_all(point) {
+            return if inside { Membership::In } else { Membership::Out };
+        }
         let ray = Ray::new(point, PROBE);
-        let inside = self.contains(point);
+        let inside = self.probe(point);
         let Some(line) = Line::new(&ray, &self.scene.bounds()) else {
             return Membership::Out;
         };

@@ -10,6 +10,7 @@ mod digits;
 mod intern;
 mod near;
 mod options;
+mod points;
 mod program;
 mod sheet;
 mod trace;
@@ -144,7 +145,8 @@ impl Scene {
 
     /// Whether a point is inside. Points of the boundary may go either way.
     ///
-    /// Makes a tracer for the occasion; for many points use [`Tracer::contains`].
+    /// Makes a tracer for the occasion; for more points use [`Tracer::contains`], for
+    /// many at once [`Scene::contains_all`].
     pub fn contains(&self, point: DVec3) -> bool {
         self.tracer().contains(point)
     }

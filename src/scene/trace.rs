@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::Scene;
+use super::points::{Around, Room};
 use crate::ray::{Crossing, Ray, Sense, Span};
 use crate::shape::{ALL, Event, Line, Sink};
 
@@ -26,6 +27,10 @@ pub struct Tracer<'a> {
     pub(super) spans: Vec<Span>,
     /// How many spans and gaps of the ray asked last have both ends at the same number.
     pub(super) collapsed: u64,
+    /// Where points can be told from surfaces.
+    pub(super) room: Option<Room>,
+    /// The leaves around the point asked last.
+    pub(super) around: Around,
 }
 
 /// What the solid does in a part of a ray.
@@ -57,6 +62,8 @@ impl<'a> Tracer<'a> {
             followers: Vec::new(),
             spans: Vec::new(),
             collapsed: 0,
+            room: Room::of(scene),
+            around: Around::default(),
         }
     }
 
@@ -87,13 +94,6 @@ impl<'a> Tracer<'a> {
     pub fn first_hit(&mut self, ray: &Ray) -> Option<Crossing> {
         let spans = self.spans(ray);
         spans.iter().flat_map(|span| [span.enter, span.exit]).find(|c| c.t >= 0.0)
-    }
-
-    /// Whether a point is inside: whether `t = 0` is in a span of a line through it, ends
-    /// at which the line enters included.
-    pub fn contains(&mut self, point: DVec3) -> bool {
-        let spans = self.spans(&Ray::new(point, PROBE));
-        spans.iter().any(|span| span.enter.t <= 0.0 && 0.0 < span.exit.t)
     }
 
     /// All crossings with all leaves that the line can meet, in order.

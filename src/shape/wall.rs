@@ -223,6 +223,22 @@ impl Wall {
 /// 2 `NEAR` − 1 reaches away, so the discriminant keeps more than half of B².
 const NEAR: f64 = 4.0;
 
+impl Wall {
+    /// No coordinate of the points from which roots are sought is larger for lines that come near
+    /// the solid; zero where such points are no farther away than the points asked about.
+    pub(super) fn vertex_reach(&self) -> f64 {
+        match self.profile {
+            Profile::Ball { .. } | Profile::Cylinder { .. } => 0.0,
+            Profile::Cone { .. }
+            | Profile::Paraboloid { .. }
+            | Profile::OneSheet { .. }
+            | Profile::TwoSheets { .. } => {
+                self.middle.abs() + 2.0 * (NEAR + 1.0) * self.reach
+            }
+        }
+    }
+}
+
 /// # What tells whether two walls are one
 impl Wall {
     /// A point that walls on one quadric have in common: the centre, vertex or apex, or

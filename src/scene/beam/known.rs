@@ -8,12 +8,12 @@ use crate::shape::Side;
 /// Everything is counted as outside of all leaves until [`Known::learn`] says otherwise,
 /// and learning is undone by unlearning, so that regions within regions cost what differs.
 #[derive(Debug)]
-pub(super) struct Known<'a> {
+pub(in crate::scene) struct Known<'a> {
     scene: &'a Scene,
     least: Vec<u32>,
     most: Vec<u32>,
     /// As `least`, where what is open counts as outside.
-    pub(super) counts: Vec<u32>,
+    pub(in crate::scene) counts: Vec<u32>,
     /// Whether a node was found to be open in the region with this number.
     seen: Vec<(u32, bool)>,
     region: u32,
@@ -22,7 +22,7 @@ pub(super) struct Known<'a> {
 
 /// What a leaf is to a region, for the expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(in crate::scene) enum Place {
     Out,
     In,
     Open,
@@ -39,7 +39,7 @@ impl From<Side> for Place {
 }
 
 impl<'a> Known<'a> {
-    pub(super) fn new(scene: &'a Scene) -> Self {
+    pub(in crate::scene) fn new(scene: &'a Scene) -> Self {
         let counts = scene.far_away.clone();
         Self {
             scene,
@@ -53,7 +53,7 @@ impl<'a> Known<'a> {
     }
 
     /// A leaf that was one thing to a region is another to the region within.
-    pub(super) fn learn(&mut self, leaf: u32, before: Place, after: Place) {
+    pub(in crate::scene) fn learn(&mut self, leaf: u32, before: Place, after: Place) {
         let Scene { program, literals, .. } = self.scene;
         let literal = literals[leaf as usize];
         let (is, may_be, counts_as) = values(before, literal.complement);
@@ -70,14 +70,14 @@ impl<'a> Known<'a> {
     }
 
     /// Whether the solid is all of the region or none; nothing if that is open.
-    pub(super) fn root(&self) -> Option<bool> {
+    pub(in crate::scene) fn root(&self) -> Option<bool> {
         let program = &self.scene.program;
         let is = program.root(&self.least);
         (is == program.root(&self.most)).then_some(is)
     }
 
     /// Forgets which nodes are open: another region is looked at.
-    pub(super) fn next_region(&mut self) {
+    pub(in crate::scene) fn next_region(&mut self) {
         self.region = self.region.wrapping_add(1);
         if self.region == 0 {
             self.seen.fill((0, false));
@@ -86,7 +86,7 @@ impl<'a> Known<'a> {
     }
 
     /// Whether all nodes above a leaf are open, so that it can matter.
-    pub(super) fn matters(&mut self, leaf: u32) -> bool {
+    pub(in crate::scene) fn matters(&mut self, leaf: u32) -> bool {
         let program = &self.scene.program;
         let mut at = self.scene.literals[leaf as usize].parent;
         self.path.clear();

@@ -28,3 +28,4 @@ mod walk;
 
 pub(crate) use bunch::{Bunch, BunchTracer, Chords};
 pub(crate) use tile::{SIDE, Tile, TileTracer};
+pub(super) use known::{Known, Place};
