@@ -29,6 +29,9 @@ const ENOUGH_FOR_ONE: usize = 1024;
 /// A region is divided into so many halves of halves at once: into 2³.
 const HALVINGS: usize = 3;
 
+/// Coarse cells are made by so many halvings.
+const COARSE: usize = 8;
+
 /// Scratch memory for many points in a scene; one for each thread.
 pub(super) struct Chunks<'a> {
     scene: &'a Scene,
@@ -39,16 +42,14 @@ pub(super) struct Chunks<'a> {
     whole: Option<Whole>,
     plan: Plan,
     block: Block,
-    /// The points in the order of their cells.
-    sorted: Vec<Record>,
     /// The cell of each point.
     cells: Vec<u32>,
-    /// Where in that order each cell ends.
-    ends: Vec<u32>,
+    coarse: Sorted,
+    fine: Sorted,
     /// The leaves that matter in the regions that are looked at, one list on the other.
     candidates: Vec<Candidate>,
-    /// What became of the leaves of a list, one for each.
-    sides: Vec<Side>,
+    /// The leaves that are all around one of these regions, and were not before.
+    within: Vec<u32>,
 }
 
 /// A small scene.
@@ -63,6 +64,42 @@ enum Whole {
 struct Record {
     point: [f64; 3],
     number: u32,
+    cell: u32,
+}
+
+/// Points in the order of their cells.
+#[derive(Debug, Default)]
+struct Sorted {
+    records: Vec<Record>,
+    /// Where in that order each cell ends; those that follow one after the other.
+    ends: Vec<u32>,
+}
+
+impl Sorted {
+    /// From how many points there are in each cell to where each begins.
+    fn count(&mut self, cells: usize, of_points: impl Iterator<Item = u32>) {
+        self.ends.clear();
+        self.ends.resize(cells, 0);
+        of_points.for_each(|cell| self.ends[cell as usize] += 1);
+        let (mut sum, ends) = (0, &mut self.ends);
+        for end in ends {
+            sum += std::mem::replace(end, sum);
+        }
+        self.records.resize(self.records.len().max(sum as usize), Record::default());
+    }
+
+    /// Puts a point behind those of its cell.
+    fn put(&mut self, cell: u32, record: Record) {
+        let end = &mut self.ends[cell as usize];
+        self.records[*end as usize] = record;
+        *end += 1;
+    }
+
+    /// Where the points of some cells are in the order.
+    fn range(&self, first: u32, count: u32) -> Range<usize> {
+        let start = first.checked_sub(1).map_or(0, |before| self.ends[before as usize]);
+        start as usize..self.ends[(first + count) as usize - 1] as usize
+    }
 }
 
 /// Some cells of a grid.
@@ -82,11 +119,11 @@ impl<'a> Chunks<'a> {
             whole: None,
             plan: Plan::default(),
             block: Block::new(),
-            sorted: Vec::new(),
             cells: Vec::new(),
-            ends: Vec::new(),
+            coarse: Sorted::default(),
+            fine: Sorted::default(),
             candidates: Vec::new(),
-            sides: Vec::new(),
+            within: Vec::new(),
         };
         // Points that are not near a mesh must not ask it.
         let has_mesh =
@@ -103,16 +140,15 @@ impl<'a> Chunks<'a> {
     fn plan_whole(&mut self, room: &Room) -> Whole {
         let within = Grid::new(room, 0).around(0, 0);
         let all = self.all_leaves();
-        let list = self.look(&within, all.clone(), Place::Out);
-        let whole = match self.known.root() {
-            Some(inside) => Whole::Decided(inside),
-            None => {
+        let whole = match self.look(&within, all) {
+            Look::Decided(inside) => Whole::Decided(inside),
+            Look::Open(list) => {
                 let mut plan = Plan::default();
                 plan.make(self.scene, &self.candidates[list], &within, room.pad);
                 Whole::Plan(plan)
             }
         };
-        self.forget(all, 0, Place::Out);
+        self.forget(0);
         whole
     }
 
@@ -168,47 +204,33 @@ impl<'a> Chunks<'a> {
         }
     }
 
+    /// Sorts points into cells, and those of many cells together first: as many as
+    /// there are places for in a processor's tables of memory.
     fn sort(&mut self, room: &Room, points: &[DVec3], inside: &mut [bool]) {
         let cells = points.len() / PER_CELL;
         let grid = Grid::new(room, cells.checked_ilog2().unwrap_or(0) as usize);
+        let fine = grid.halvings().saturating_sub(COARSE);
         let outside = 1_u32 << grid.halvings();
-        self.ends.clear();
-        self.ends.resize(outside as usize + 1, 0);
         self.cells.clear();
-        for point in points {
-            let cell = if room.holds(*point) { grid.cell(*point) } else { outside };
-            self.ends[cell as usize] += 1;
-            self.cells.push(cell);
+        self.cells.extend(
+            points.iter().map(
+                |&point| {
+                    if room.holds(point) { grid.cell(point) } else { outside }
+                },
+            ),
+        );
+        let Self { cells, coarse, tracer, .. } = self;
+        let outside = outside >> fine;
+        coarse.count(outside as usize + 1, cells.iter().map(|cell| cell >> fine));
+        for ((number, point), &cell) in (0..).zip(points).zip(&*cells) {
+            coarse.put(cell >> fine, Record { point: point.to_array(), number, cell });
         }
-        let mut sum = 0;
-        for end in &mut self.ends {
-            sum += std::mem::replace(end, sum);
-        }
-        self.sorted.resize(points.len(), Record::default());
-        for ((number, point), &cell) in (0..).zip(points).zip(&self.cells) {
-            let end = &mut self.ends[cell as usize];
-            self.sorted[*end as usize] = Record { point: point.to_array(), number };
-            *end += 1;
-        }
-        for i in self.records(outside, 1) {
-            let Record { point, number } = self.sorted[i];
-            inside[number as usize] = self.tracer.contains(point.into());
+        for record in &coarse.records[coarse.range(outside, 1)] {
+            inside[record.number as usize] = tracer.contains(record.point.into());
         }
         let all = self.all_leaves();
-        self.divide(
-            room,
-            &grid,
-            Part { prefix: 0, halvings: 0 },
-            all,
-            Place::Out,
-            inside,
-        );
-    }
-
-    /// Where the points of some cells are in the order.
-    fn records(&self, first: u32, count: u32) -> Range<usize> {
-        let start = first.checked_sub(1).map_or(0, |before| self.ends[before as usize]);
-        start as usize..self.ends[(first + count) as usize - 1] as usize
+        let sorting = Sorting { room, grid: &grid, fine };
+        self.divide(&sorting, Part { prefix: 0, halvings: 0 }, all, inside);
     }
 
     fn all_leaves(&mut self) -> Range<usize> {
@@ -218,90 +240,123 @@ impl<'a> Chunks<'a> {
         0..self.candidates.len()
     }
 
-    /// Learns what the leaves of a list are to a box, and lists those that matter there still,
-    /// if anything is open.
-    fn look(&mut self, around: &Aabb, list: Range<usize>, before: Place) -> Range<usize> {
+    /// Learns which leaves of a list are all around a box, and lists on top of it those that
+    /// matter there still. The others count as outside.
+    fn look(&mut self, around: &Aabb, list: Range<usize>) -> Look {
+        let Self { scene, known, candidates, within, .. } = self;
         let reach = around.min.abs().max(around.max.abs()).max_element();
         let region = Region::of_box(around, reach);
-        let first_side = self.sides.len();
-        for i in list.clone() {
-            let Candidate { leaf, faces } = self.candidates[i];
-            let bounds = &self.scene.clipped[leaf as usize];
-            let slack = self.scene.slacks[leaf as usize];
-            let side = if around.intersection(*bounds).is_empty() {
-                Side::Out
-            } else {
-                match region.side(&self.scene.shapes[leaf as usize], bounds, slack) {
-                    Side::Crossing(open) if open & faces == 0 => Side::In,
-                    Side::Crossing(open) => Side::Crossing(open & faces),
-                    side @ (Side::In | Side::Out) => side,
+        let first = candidates.len();
+        for i in list {
+            let Candidate { leaf, faces } = candidates[i];
+            let bounds = &scene.clipped[leaf as usize];
+            if around.intersection(*bounds).is_empty() {
+                continue;
+            }
+            let slack = scene.slacks[leaf as usize];
+            match region.side(&scene.shapes[leaf as usize], bounds, slack) {
+                Side::Out => {}
+                Side::Crossing(open) if open & faces != 0 => {
+                    known.learn(leaf, Place::Out, Place::Open);
+                    candidates.push(Candidate { leaf, faces: open & faces });
                 }
-            };
-            self.known.learn(leaf, before, side.into());
-            self.sides.push(side);
-        }
-        let first = self.candidates.len();
-        if self.known.root().is_none() {
-            self.known.next_region();
-            for (i, k) in list.zip(first_side..) {
-                let leaf = self.candidates[i].leaf;
-                if let Side::Crossing(faces) = self.sides[k]
-                    && self.known.matters(leaf)
-                {
-                    self.candidates.push(Candidate { leaf, faces });
+                Side::In | Side::Crossing(_) => {
+                    known.learn(leaf, Place::Out, Place::In);
+                    within.push(leaf);
                 }
             }
         }
-        first..self.candidates.len()
+        let decided = known.root();
+        if decided.is_none() {
+            known.next_region();
+            for candidate in &mut candidates[first..] {
+                if !known.matters(candidate.leaf) {
+                    candidate.faces = 0;
+                }
+            }
+        }
+        let mut open = first;
+        for i in first..candidates.len() {
+            known.learn(candidates[i].leaf, Place::Open, Place::Out);
+            if candidates[i].faces != 0 {
+                candidates[open] = candidates[i];
+                open += 1;
+            }
+        }
+        match decided {
+            Some(inside) => {
+                candidates.truncate(first);
+                Look::Decided(inside)
+            }
+            None => {
+                candidates.truncate(open);
+                Look::Open(first..open)
+            }
+        }
     }
 
-    /// Forgets what was learned of the leaves of a list, which is on top then.
-    fn forget(&mut self, list: Range<usize>, sides: usize, before: Place) {
-        self.candidates.truncate(list.end);
-        for (i, k) in list.zip(sides..) {
-            self.known.learn(self.candidates[i].leaf, self.sides[k].into(), before);
+    /// Forgets which leaves are all around a region.
+    fn forget(&mut self, from: usize) {
+        for leaf in self.within.drain(from..) {
+            self.known.learn(leaf, Place::In, Place::Out);
         }
-        self.sides.truncate(sides);
     }
 
     /// Answers for the points of some cells.
     fn divide(
         &mut self,
-        room: &Room,
-        grid: &Grid,
+        sorting: &Sorting<'_>,
         part: Part,
         list: Range<usize>,
-        before: Place,
         inside: &mut [bool],
     ) {
-        let left = grid.halvings() - part.halvings;
-        let records = self.records(part.prefix << left, 1 << left);
+        let (left, is_fine) = sorting.left(part);
+        let records = if is_fine {
+            self.fine.range((part.prefix << left) & ((1 << sorting.fine) - 1), 1 << left)
+        } else {
+            self.coarse.range(part.prefix << left, 1 << left)
+        };
         if records.is_empty() {
             return;
         }
-        let around = grid.around(part.prefix, part.halvings);
-        let sides = self.sides.len();
-        let open = self.look(&around, list.clone(), before);
-        if let Some(decided) = self.known.root() {
-            for record in &self.sorted[records] {
-                inside[record.number as usize] = decided;
+        let around = sorting.grid.around(part.prefix, part.halvings);
+        let (first, within) = (self.candidates.len(), self.within.len());
+        match self.look(&around, list) {
+            Look::Decided(decided) => {
+                let sorted = if is_fine { &self.fine } else { &self.coarse };
+                for record in &sorted.records[records] {
+                    inside[record.number as usize] = decided;
+                }
             }
-        } else {
-            let enough = if open.len() > 1 { ENOUGH } else { ENOUGH_FOR_ONE };
-            if left == 0 || records.len() <= enough {
-                self.compute(room, &around, open, records, inside);
-            } else {
-                let more = left.min(HALVINGS);
-                for i in 0..1 << more {
-                    let part = Part {
-                        prefix: part.prefix << more | i,
-                        halvings: part.halvings + more,
-                    };
-                    self.divide(room, grid, part, open.clone(), Place::Open, inside);
+            Look::Open(open) => {
+                let enough = if open.len() > 1 { ENOUGH } else { ENOUGH_FOR_ONE };
+                let is_last = part.halvings == sorting.grid.halvings();
+                if is_last || records.len() <= enough {
+                    self.compute(sorting.room, &around, open, is_fine, records, inside);
+                } else {
+                    if left == 0 {
+                        self.sort_finely(sorting.fine, records);
+                    }
+                    let left = if left == 0 { sorting.fine } else { left };
+                    for part in part.divided(left.min(HALVINGS)) {
+                        self.divide(sorting, part, open.clone(), inside);
+                    }
                 }
             }
         }
-        self.forget(list, sides, before);
+        self.candidates.truncate(first);
+        self.forget(within);
+    }
+
+    /// Sorts the points of a coarse cell into cells.
+    fn sort_finely(&mut self, halvings: usize, records: Range<usize>) {
+        let Self { coarse, fine, .. } = self;
+        let records = &coarse.records[records];
+        let last_bits = (1_u32 << halvings) - 1;
+        fine.count(1 << halvings, records.iter().map(|record| record.cell & last_bits));
+        for record in records {
+            fine.put(record.cell & last_bits, *record);
+        }
     }
 
     /// Computes the leaves of a list for points in a box.
@@ -310,12 +365,15 @@ impl<'a> Chunks<'a> {
         room: &Room,
         around: &Aabb,
         list: Range<usize>,
+        is_fine: bool,
         records: Range<usize>,
         inside: &mut [bool],
     ) {
-        let Self { scene, arch, tracer, plan, block, sorted, candidates, .. } = self;
+        let Self { scene, arch, tracer, plan, block, coarse, fine, candidates, .. } =
+            self;
+        let sorted = if is_fine { fine } else { coarse };
         plan.make(scene, &candidates[list], around, room.pad);
-        for records in sorted[records].chunks(BLOCK) {
+        for records in sorted.records[records].chunks(BLOCK) {
             for (i, record) in records.iter().enumerate() {
                 let [x, y, z] = record.point;
                 block.points[0][i] = x;
@@ -332,5 +390,44 @@ impl<'a> Chunks<'a> {
                 };
             }
         }
+    }
+}
+
+/// What a look at a region has found.
+enum Look {
+    /// It is inside or outside.
+    Decided(bool),
+    /// The candidates that matter there.
+    Open(Range<usize>),
+}
+
+/// How points are sorted.
+struct Sorting<'a> {
+    room: &'a Room,
+    grid: &'a Grid,
+    /// Into how many cells coarse ones are divided, in halvings.
+    fine: usize,
+}
+
+impl Sorting<'_> {
+    /// How often a part is still to be halved, until its points are cells of the order in which
+    /// they are; and whether that is the fine one.
+    fn left(&self, part: Part) -> (usize, bool) {
+        let all = self.grid.halvings();
+        match (all - self.fine).checked_sub(part.halvings) {
+            Some(left) => (left, false),
+            None => (all - part.halvings, true),
+        }
+    }
+}
+
+impl Part {
+    /// Its parts.
+    fn divided(self, halvings: usize) -> impl Iterator<Item = Self> {
+        let Self { prefix, halvings: before } = self;
+        (0..1 << halvings).map(move |i| Self {
+            prefix: prefix << halvings | i,
+            halvings: before + halvings,
+        })
     }
 }
