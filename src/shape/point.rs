@@ -20,7 +20,7 @@
 //!
 //! [`doubt`]: super::doubt
 
-use glam::{BVec3, DVec3};
+use glam::DVec3;
 
 use super::doubt::U;
 use super::plane::Plane;
@@ -45,8 +45,12 @@ pub(crate) enum Equation {
     Band { normal: DVec3, middle: f64, half: f64, scale: f64 },
     /// `squares · d² − constant` with `d = p − origin`.
     Level { origin: DVec3, squares: DVec3, constant: f64 },
-    /// The same without the square of one coordinate.
-    Disc { axis: usize, origin: DVec3, squares: DVec3, constant: f64 },
+    /// `square d² − constant`.
+    Round { origin: DVec3, square: f64, constant: f64 },
+    /// The same without the square of one coordinate, `square` for the others.
+    Disc { axis: usize, origin: DVec3, square: f64, constant: f64 },
+    /// The largest of three slabs, for all axes.
+    Cuboid { middle: DVec3, half: DVec3, scale: f64 },
     /// `squares · d² + products · (dy dz, dz dx, dx dy) + linear · d − constant`.
     Quadric {
         origin: DVec3,
@@ -83,13 +87,22 @@ impl Equation {
                 let d = Vec3 { x: d.x * d.x, y: d.y * d.y, z: d.z * d.z };
                 Vec3::same(like, squares).dot(d) - like.same(constant)
             }
-            Self::Disc { axis, origin, squares, constant } => {
+            Self::Round { origin, square, constant } => {
+                let d = p - Vec3::same(like, origin);
+                d.dot(d) * like.same(square) - like.same(constant)
+            }
+            Self::Disc { axis, origin, square, constant } => {
                 let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
                 let a = on_axis(p, i) - like.same(origin[i]);
                 let b = on_axis(p, j) - like.same(origin[j]);
-                let a = a * a * like.same(squares[i]);
-                let b = b * b * like.same(squares[j]);
-                (a + b) - like.same(constant)
+                (a * a + b * b) * like.same(square) - like.same(constant)
+            }
+            Self::Cuboid { middle, half, scale } => {
+                let d = p - Vec3::same(like, middle);
+                let (x, y) =
+                    (d.x.abs() - like.same(half.x), d.y.abs() - like.same(half.y));
+                let z = d.z.abs() - like.same(half.z);
+                x.max(y).max(z) * like.same(scale)
             }
             Self::Quadric { origin, squares, products, linear, constant } => {
                 let d = p - Vec3::same(like, origin);
@@ -121,8 +134,14 @@ impl Equation {
             Self::Level { origin, squares, constant } => {
                 Self::Level { origin, squares: -squares, constant: -constant }
             }
-            Self::Disc { axis, origin, squares, constant } => {
-                Self::Disc { axis, origin, squares: -squares, constant: -constant }
+            Self::Round { origin, square, constant } => {
+                Self::Round { origin, square: -square, constant: -constant }
+            }
+            Self::Disc { axis, origin, square, constant } => {
+                Self::Disc { axis, origin, square: -square, constant: -constant }
+            }
+            Self::Cuboid { middle, half, scale } => {
+                Self::Cuboid { middle, half, scale: -scale }
             }
             Self::Quadric { origin, squares, products, linear, constant } => {
                 Self::Quadric {
@@ -178,7 +197,20 @@ impl Shape {
         mut put: impl FnMut(Equation),
     ) {
         match self {
-            Self::Cuboid(leaf) => of_planes(&leaf.planes, faces, within, pad, &mut put),
+            Self::Cuboid(leaf) => {
+                let mut slabs = [None; 3];
+                of_planes(&leaf.planes, faces, within, pad, &mut |equation| {
+                    if let Equation::Slab { axis, .. } = equation {
+                        slabs[axis] = Some(equation);
+                    } else {
+                        put(equation);
+                    }
+                });
+                match cuboid(slabs) {
+                    Some(equation) => put(equation),
+                    None => slabs.into_iter().flatten().for_each(put),
+                }
+            }
             Self::HalfSpace(leaf) => {
                 of_planes(&leaf.planes, faces, within, pad, &mut put);
             }
@@ -257,6 +289,20 @@ fn of_planes(
             }
         }
     }
+}
+
+/// Slabs across all three axes as one, with the largest of their tolerances.
+fn cuboid(slabs: [Option<Equation>; 3]) -> Option<Equation> {
+    let (mut middles, mut halves, mut least) = (DVec3::ZERO, DVec3::ZERO, f64::INFINITY);
+    for slab in slabs {
+        let Some(Equation::Slab { axis, middle, half, scale }) = slab else {
+            return None;
+        };
+        middles[axis] = middle;
+        halves[axis] = half;
+        least = least.min(scale);
+    }
+    Some(Equation::Cuboid { middle: middles, half: halves, scale: least })
 }
 
 /// The largest coordinates of a box.
@@ -365,23 +411,33 @@ impl Wall {
         let scale = 1.0 / tolerance;
         let constant = c * scale;
         let squares = squares * scale;
-        let negligible = (squares * away * away).abs().cmplt(DVec3::splat(0.0625));
-        let equation = match (is_level, negligible) {
-            (true, only) if only == BVec3::new(true, false, false) => {
-                Equation::Disc { axis: 0, origin, squares, constant }
-            }
-            (true, only) if only == BVec3::new(false, true, false) => {
-                Equation::Disc { axis: 1, origin, squares, constant }
-            }
-            (true, only) if only == BVec3::new(false, false, true) => {
-                Equation::Disc { axis: 2, origin, squares, constant }
-            }
-            (true, _) => Equation::Level { origin, squares, constant },
-            (false, _) => {
-                let (products, linear) = (products * scale, gradient * scale);
-                Equation::Quadric { origin, squares, products, linear, constant }
-            }
+        let equation = if is_level {
+            level(origin, squares, constant, away)
+        } else {
+            let (products, linear) = (products * scale, gradient * scale);
+            Equation::Quadric { origin, squares, products, linear, constant }
         };
         equation.checked(terms, tolerance)
     }
+}
+
+/// An equation of squares alone. Those that differ, or are there, by less than a sixteenth of
+/// the tolerance for all points up to `away` are equal, or not there.
+fn level(origin: DVec3, squares: DVec3, constant: f64, away: DVec3) -> Equation {
+    const NEGLIGIBLE: f64 = 0.0625 / 3.0;
+    let parts = squares * away * away;
+    let are_one = |i: usize, j: usize| {
+        let rest = (squares[i] - squares[j]).abs() * away[j] * away[j];
+        rest < NEGLIGIBLE
+    };
+    if are_one(0, 1) && are_one(0, 2) {
+        return Equation::Round { origin, square: squares.x, constant };
+    }
+    for axis in 0..3 {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        if parts[axis].abs() < NEGLIGIBLE && are_one(i, j) {
+            return Equation::Disc { axis, origin, square: squares[i], constant };
+        }
+    }
+    Equation::Level { origin, squares, constant }
 }

@@ -191,14 +191,15 @@ impl<'a> Chunks<'a> {
         inside: &mut [bool],
     ) {
         for (points, inside) in points.chunks(BLOCK).zip(inside.chunks_mut(BLOCK)) {
-            self.block.load(self.arch, &room.bounds, points);
+            let all_here = self.block.load(self.arch, &room.bounds, points);
             self.block.compute(self.arch, plan, points.len());
-            let certain = self.block.answer(self.arch, inside);
-            if !certain {
-                for (i, point) in points.iter().enumerate() {
-                    if self.block.is_unsure(i) {
-                        inside[i] = self.tracer.contains(*point);
-                    }
+            let all_certain = self.block.answer(self.arch, inside);
+            if all_here && all_certain {
+                continue;
+            }
+            for (i, point) in points.iter().enumerate() {
+                if self.block.found()[i].abs() <= 1.0 || !room.holds(*point) {
+                    inside[i] = self.tracer.contains(*point);
                 }
             }
         }

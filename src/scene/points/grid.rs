@@ -49,8 +49,10 @@ impl Grid {
         let steps = DVec3::from_array(steps);
         let per_unit =
             DVec3::select(steps.cmpgt(DVec3::ZERO), steps / bounds.size(), DVec3::ZERO);
+        // The one cell of an axis that is not divided is cut at the bounds on both sides.
+        let undivided = 2.0 * bounds.size();
         let width =
-            DVec3::select(steps.cmpgt(DVec3::ZERO), bounds.size() / steps, bounds.size());
+            DVec3::select(steps.cmpgt(DVec3::ZERO), bounds.size() / steps, undivided);
         let bits = [0, 1, 2].map(|axis| {
             (0..1_u32 << count[axis])
                 .map(|place| spread(place, axis, &axes, count[axis]))

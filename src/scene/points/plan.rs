@@ -157,30 +157,23 @@ impl Plan {
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     pub(super) points: [Numbers; 3],
-    /// Which of the points that were loaded are in the bounds.
-    holds: [bool; BLOCK],
     slots: Vec<Numbers>,
 }
 
 impl Block {
     pub(super) fn new() -> Self {
-        Self { points: [[0.0; BLOCK]; 3], holds: [false; BLOCK], slots: Vec::new() }
+        Self { points: [[0.0; BLOCK]; 3], slots: Vec::new() }
     }
 
-    /// Takes points as they come. Those that are not in the bounds are unsure.
-    pub(super) fn load(&mut self, arch: Arch, bounds: &Aabb, points: &[DVec3]) {
-        arch.dispatch(Load { block: self, bounds, points });
+    /// Takes points as they come. Says whether all are in the bounds.
+    pub(super) fn load(&mut self, arch: Arch, bounds: &Aabb, points: &[DVec3]) -> bool {
+        arch.dispatch(Load { block: self, bounds, points })
     }
 
-    /// Writes for points that were loaded whether they are inside, as far as is certain. Says
-    /// whether that is so of all.
+    /// Writes for each point whether it is inside, as far as is certain. Says whether that is so
+    /// of all.
     pub(super) fn answer(&self, arch: Arch, inside: &mut [bool]) -> bool {
         arch.dispatch(Answer { block: self, inside })
-    }
-
-    /// Whether a point that was loaded is neither inside nor outside for certain.
-    pub(super) fn is_unsure(&self, i: usize) -> bool {
-        !self.holds[i] || self.slots[ROOT][i].abs() <= 1.0
     }
 
     /// Computes a plan for the first points.
@@ -204,22 +197,47 @@ struct Load<'a> {
 }
 
 impl WithSimd for Load<'_> {
-    type Output = ();
+    type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { block: Block { points: [x, y, z], holds, .. }, bounds, points } = self;
-        let Aabb { min, max } = *bounds;
-        for ((((p, x), y), z), holds) in points.iter().zip(x).zip(y).zip(z).zip(holds) {
-            *holds = (p.x >= min.x)
-                & (p.x <= max.x)
-                & (p.y >= min.y)
-                & (p.y <= max.y)
-                & (p.z >= min.z)
-                & (p.z <= max.z);
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let Self { block: Block { points: [x, y, z], .. }, bounds, points } = self;
+        for (((p, x), y), z) in points.iter().zip(&mut *x).zip(&mut *y).zip(&mut *z) {
             (*x, *y, *z) = (p.x, p.y, p.z);
         }
+        let vectors = points.len().div_ceil(S::F64_LANES);
+        if let Some(last) = points.last() {
+            // No point that is not asked about is outside.
+            let rest = points.len()..vectors * S::F64_LANES;
+            x[rest.clone()].fill(last.x);
+            y[rest.clone()].fill(last.y);
+            z[rest].fill(last.z);
+        }
+        let mut least = Vector(simd, simd.splat_f64s(1.0));
+        least = holding(simd, x, [bounds.min.x, bounds.max.x], least, vectors);
+        least = holding(simd, y, [bounds.min.y, bounds.max.y], least, vectors);
+        least = holding(simd, z, [bounds.min.z, bounds.max.z], least, vectors);
+        simd.reduce_min_f64s(least.1) > 0.0
     }
+}
+
+/// `least`, or zero where a coordinate is not within bounds, or no number.
+#[inline(always)]
+fn holding<S: Simd>(
+    simd: S,
+    numbers: &Numbers,
+    [min, max]: [f64; 2],
+    least: Vector<S>,
+    vectors: usize,
+) -> Vector<S> {
+    // A number that is not smaller is larger than the one before.
+    let (below, above) = (least.same(min.next_down()), least.same(max.next_up()));
+    let (mut least, zero) = (least, least.same(0.0));
+    for &number in S::as_simd_f64s(numbers).0.iter().take(vectors) {
+        let number = Vector(simd, number);
+        least = Vector::select(below.less(number) & number.less(above), least, zero);
+    }
+    least
 }
 
 struct Answer<'a> {
@@ -232,11 +250,11 @@ impl WithSimd for Answer<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> bool {
-        let Self { block: Block { slots, holds, .. }, inside } = self;
+        let Self { block: Block { slots, .. }, inside } = self;
         let mut certain = true;
-        for ((value, holds), inside) in slots[ROOT].iter().zip(holds).zip(inside) {
+        for (value, inside) in slots[ROOT].iter().zip(inside) {
             *inside = *value < 0.0;
-            certain &= (value.abs() > 1.0) & *holds;
+            certain &= value.abs() > 1.0;
         }
         certain
     }
@@ -279,8 +297,8 @@ fn slot<S: Simd>(simd: S, join: Join, from: &Numbers, to: &mut Numbers, vectors:
         let (a, b) = (Vector(simd, from), Vector(simd, *to));
         *to = match join {
             Join::Set => a.1,
-            Join::Min => a.min(b).1,
-            Join::Max => a.max(b).1,
+            Join::Min => simd.min_f64s(a.1, b.1),
+            Join::Max => simd.max_f64s(a.1, b.1),
         };
     }
 }
@@ -306,6 +324,8 @@ fn face<S: Simd>(
     }
     kinds!(
         Equation::Level { .. },
+        Equation::Round { .. },
+        Equation::Cuboid { .. },
         Equation::Quadric { .. },
         Equation::Plane { .. },
         Equation::Band { .. },
@@ -343,12 +363,12 @@ fn joined<S: Simd>(
         }
         Join::Min => {
             for (((&x, &y), &z), to) in points {
-                *to = equation.at(at(simd, x, y, z)).min(Vector(simd, *to)).1;
+                *to = simd.min_f64s(equation.at(at(simd, x, y, z)).1, *to);
             }
         }
         Join::Max => {
             for (((&x, &y), &z), to) in points {
-                *to = equation.at(at(simd, x, y, z)).max(Vector(simd, *to)).1;
+                *to = simd.max_f64s(equation.at(at(simd, x, y, z)).1, *to);
             }
         }
     }
