@@ -18,12 +18,12 @@ fn main() -> Result<(), CompileError> {
     let wheel = spokes.fold(rim + hub, |wheel, spoke| wheel + spoke) - axle;
 
     let scene = Scene::compile(&wheel)?;
-    let mut tracer = scene.tracer();
     for row in (-10..=10).rev() {
-        let line: String = (-20..=20)
+        let points: Vec<_> = (-20..=20)
             .map(|column| dvec3(0.5 * f64::from(column), f64::from(row), 1.0))
-            .map(|point| if tracer.contains(point) { '#' } else { '.' })
             .collect();
+        let inside = scene.contains_all(&points).into_iter();
+        let line: String = inside.map(|is| if is { '#' } else { '.' }).collect();
         println!("{line}");
     }
     Ok(())

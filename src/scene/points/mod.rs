@@ -89,7 +89,7 @@ impl Scene {
     /// Points may be anywhere and in any order; one that is not finite is outside. With the
     /// `parallel` feature all threads take part; answers do not depend on how many there
     /// are, nor on what other points are asked about. It takes some 40 bytes for each of
-    /// a million points at a time, on each thread.
+    /// at most 2²⁰ points at a time, on each thread.
     ///
     /// ```
     /// use glam::dvec3;
@@ -162,5 +162,50 @@ fn for_each<'a>(
     let mut state = chunks();
     for (points, inside) in points.chunks(len).zip(inside.chunks_mut(len)) {
         state.answer(points, inside);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::op::Op;
+    use crate::solid::Solid;
+    use glam::dvec3;
+
+    /// Where leaves around a point are all certain, lines and their neighbours say the same.
+    #[test]
+    fn certain_points_are_classified_as_lines_classify_them() {
+        let mut state = 1_u64;
+        let mut number = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 40) as f64 / (1_u64 << 24) as f64
+        };
+        let mut point = || 4.0 * dvec3(number(), number(), number());
+        let kinds = [
+            Solid::ball(0.6),
+            Solid::cuboid(dvec3(0.5, 1.0, 1.5)),
+            Solid::frustum(0.7, 0.2, 1.0),
+            Solid::cylinder(0.5, 2.0),
+        ];
+        let leaves = (0..24).map(|i| {
+            let (axis, at) = (point() - 2.0, point());
+            let straight = kinds[i % 4].clone().translated((2.0 * at).round() / 2.0);
+            let turned = kinds[i % 4].clone().rotated(axis.normalize_or(DVec3::X), 1.0);
+            if i % 2 == 0 { straight } else { turned.translated(at) }
+        });
+        let solid = leaves.enumerate().fold(Solid::ball(1.0), |solid, (i, leaf)| {
+            let op = if i % 3 == 2 { Op::Difference } else { Op::Union };
+            Solid::boolean(op, [solid, leaf])
+        });
+        let scene = Scene::compile(&solid).expect("the solid is right");
+        let (mut tracer, mut lines) = (scene.tracer(), scene.tracer());
+        lines.room = None;
+        for i in 0..20_000 {
+            let p = point();
+            // Every other one of the lattice on which leaves are.
+            let p = if i % 2 == 0 { (4.0 * p).round() / 4.0 } else { p };
+            assert_eq!(tracer.classify(p), lines.classify(p), "{p}");
+            assert_eq!(tracer.contains(p), lines.contains(p), "{p}");
+        }
     }
 }
