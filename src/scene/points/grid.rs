@@ -66,7 +66,6 @@ impl Grid {
     }
 
     /// The cell of a point within the bounds.
-    #[expect(clippy::cast_possible_truncation, reason = "the last bits are wanted")]
     #[inline(always)]
     pub(super) fn cell(&self, p: DVec3) -> u32 {
         let places = (p - self.bounds.min) * self.per_unit + WHOLE;
