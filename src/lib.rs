@@ -63,9 +63,14 @@
 //! same results to the last bit; `image` shades pictures; `cli` is the program. Users of the
 //! library alone take `default-features = false`.
 
-// Tests of private parts share their meshes with tests from outside.
+// Tests of private parts share models and meshes with tests from outside.
 #[cfg(test)]
 extern crate self as solidray;
+
+#[cfg(test)]
+#[expect(dead_code, reason = "the tests from outside need more of it")]
+#[path = "../tests/support/mod.rs"]
+mod support;
 
 mod aabb;
 mod angle;

@@ -8,7 +8,7 @@ use crate::ray::{Crossing, Ray, Sense};
 use crate::scene::{SIDE, Scene, Tile};
 
 /// The side of the square tiles in which frames are traced and stored.
-pub(super) const TILE: u32 = SIDE as u32;
+pub(super) const TILE: u32 = SIDE;
 const TILE_AREA: usize = (TILE * TILE) as usize;
 
 /// The first crossing of one ray through each pixel, in 16 bytes a pixel.

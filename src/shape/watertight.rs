@@ -13,19 +13,8 @@ use super::{ALL, Chain, Event, IndexedMesh, Line, Shape, Sink};
 use crate::aabb::Aabb;
 use crate::mesh::Mesh;
 use crate::ray::{Ray, Sense};
-
-#[expect(dead_code, reason = "the numbers are drawn for other tests too")]
-#[path = "../../tests/support/dice.rs"]
-mod dice;
-
-#[expect(dead_code, reason = "the meshes are made for other tests too")]
-#[path = "../../tests/support/meshes.rs"]
-mod meshes;
-
-#[path = "../../tests/support/aim.rs"]
-mod aim;
-
-use dice::Dice;
+use crate::support::dice::Dice;
+use crate::support::{aim, meshes};
 
 /// A mesh in its place.
 struct Case {

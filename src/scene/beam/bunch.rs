@@ -166,7 +166,7 @@ impl Chords {
 }
 
 /// The places block by block, with the number of the first of each.
-fn blocks<'a>(places: &'a [[f64; 2]]) -> impl Iterator<Item = (usize, &'a [[f64; 2]])> {
+fn blocks(places: &[[f64; 2]]) -> impl Iterator<Item = (usize, &[[f64; 2]])> {
     (0..).step_by(BLOCK).zip(places.chunks(BLOCK))
 }
 

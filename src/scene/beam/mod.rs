@@ -27,5 +27,5 @@ mod tile;
 mod walk;
 
 pub(crate) use bunch::{Bunch, BunchTracer, Chords};
-pub(crate) use tile::{SIDE, Tile, TileTracer};
 pub(super) use known::{Known, Place};
+pub(crate) use tile::{SIDE, Tile, TileTracer};

@@ -10,13 +10,10 @@ use crate::fan::{Fan, Linear};
 use crate::op::Op;
 use crate::ray::{Crossing, Span};
 use crate::scene::Scene;
-
-#[expect(dead_code, reason = "other tests need more of it")]
-#[path = "../../../tests/support/mod.rs"]
-mod support;
-
-use support::model::{Leaf, Model};
-use support::strategies::{coordinate, direction, length, model, op, place, placed_leaf};
+use crate::support::model::{Leaf, Model};
+use crate::support::strategies::{
+    coordinate, direction, length, model, op, place, placed_leaf,
+};
 
 /// A fan and the step from a ray to the next, such that rays often are on lattices. Its middle
 /// ray goes through the origin.

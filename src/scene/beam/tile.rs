@@ -15,13 +15,16 @@ use crate::scene::{Scene, Tracer};
 use crate::shape::Region;
 
 /// The side of a tile, in rays.
-pub(crate) const SIDE: usize = 32;
+pub(crate) const SIDE: u32 = 32;
 
 /// The side of a block.
 const BLOCK_SIDE: usize = 8;
 
+/// How many blocks are side by side in a tile.
+const BLOCKS_WIDE: usize = SIDE as usize / BLOCK_SIDE;
+
 /// How many blocks a tile has.
-const BLOCKS: usize = (SIDE / BLOCK_SIDE) * (SIDE / BLOCK_SIDE);
+const BLOCKS: usize = BLOCKS_WIDE * BLOCKS_WIDE;
 
 /// No more leaves than this, and a cell is not divided in depth.
 const ENOUGH: usize = 3;
@@ -128,10 +131,10 @@ impl<'a> TileTracer<'a> {
 
     /// Finds the leaves that the tile may meet, and divides it.
     fn look_at(&mut self, tile: &Tile<'_>) {
-        let sight = Sight::new(tile.fan, tile.corners(0, SIDE), self.scene);
+        let sight =
+            Sight::new(tile.fan, tile.corners(0, BLOCKS_WIDE * BLOCK_SIDE), self.scene);
         let [near, far] = sight.depth;
-        let whole =
-            Cell { block: 0, side: SIDE / BLOCK_SIDE, depth: [near.max(0.0), far] };
+        let whole = Cell { block: 0, side: BLOCKS_WIDE, depth: [near.max(0.0), far] };
         if whole.depth[0] >= far || self.is_done(&whole) {
             return;
         }

@@ -118,7 +118,7 @@ impl<'a> Walk<'a> {
         let passed = match logic {
             Logic::All { .. } => gather_within(slots, ray, ends),
             Logic::Table(_) | Logic::Any { .. } => {
-                slots.iter().enumerate().for_each(|(i, slot)| gather(i, slot, ray, ends));
+                (0..).zip(slots).for_each(|(i, slot)| gather(i, slot, ray, ends));
                 0
             }
         };
@@ -181,12 +181,11 @@ pub(super) fn first(
 
 /// Collects the ends of the stretch in slot i.
 #[inline]
-fn gather(i: usize, slot: &Slot, ray: usize, ends: &mut Ends) {
+fn gather(i: u32, slot: &Slot, ray: usize, ends: &mut Ends) {
     let (enter, exit) = (slot.enter[ray], slot.exit[ray]);
     if enter < exit {
-        let end = 2 * i as u32;
-        insert(ends, (enter, end));
-        insert(ends, (exit, end + 1));
+        insert(ends, (enter, 2 * i));
+        insert(ends, (exit, 2 * i + 1));
     }
 }
 
@@ -208,21 +207,20 @@ fn gather_within(slots: &[Slot], ray: usize, ends: &mut Ends) -> u64 {
         return 0;
     }
     let mut passed = 0;
-    for (i, slot) in slots.iter().enumerate() {
+    for (i, slot) in (0..).zip(slots) {
         let (enter, exit) = (slot.enter[ray], slot.exit[ray]);
         if slot.is_cut() {
             if exit >= from && enter <= to {
                 gather(i, slot, ray, ends);
             }
         } else if slot.is_alone {
-            let end = 2 * i as u32;
             if enter < from {
                 passed += 1;
             } else {
-                insert(ends, (enter, end));
+                insert(ends, (enter, 2 * i));
             }
             if exit <= to {
-                insert(ends, (exit, end + 1));
+                insert(ends, (exit, 2 * i + 1));
             }
         } else {
             gather(i, slot, ray, ends);
