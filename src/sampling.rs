@@ -30,11 +30,16 @@ impl Fibonacci {
         self.n
     }
 
-    /// The numbers of points whose first coordinate, not moved, is between two numbers on the
-    /// torus that are at most 1 apart; and of some more.
-    pub(crate) fn between(&self, from: f64, to: f64) -> impl Iterator<Item = u64> {
+    /// The points, moved by `shift` on the torus, of which the first coordinate is between two
+    /// numbers from 0 to 1; and some more.
+    pub(crate) fn between(
+        &self,
+        from: f64,
+        to: f64,
+        shift: DVec2,
+    ) -> impl Iterator<Item = DVec2> {
         let n = self.n as f64;
-        let first = (from * n).floor() - 2.0;
+        let first = ((from - shift.x) * n).floor() - 2.0;
         let count = ((to - from) * n).ceil() + 5.0;
         #[expect(
             clippy::cast_possible_truncation,
@@ -42,13 +47,19 @@ impl Fibonacci {
             reason = "whole numbers from 0 to n, which is below 2^53"
         )]
         let [first, count] = [first.rem_euclid(n), count.min(n)].map(|x| x as u64);
-        let n = self.n;
-        (first..first + count).map(move |i| i % n)
+        let Self { n, generator } = *self;
+        let second = first % n * generator % n;
+        let wrapped = move |x: u64| if x < n { x } else { x - n };
+        let step = move |&[i, other]: &[u64; 2]| {
+            Some([wrapped(i + 1), wrapped(other + generator)])
+        };
+        let numbers = std::iter::successors(Some([first % n, second]), step);
+        let count = usize::try_from(count).expect("that many points fit the memory");
+        numbers.take(count).map(move |[i, other]| self.moved(i, other, shift))
     }
 
-    /// Point `i`, moved by `shift` on the torus.
-    pub(crate) fn point(&self, i: u64, shift: DVec2) -> DVec2 {
-        let other = (i % self.n) * self.generator % self.n;
+    /// The point with these numbers, moved by `shift`.
+    fn moved(&self, i: u64, other: u64, shift: DVec2) -> DVec2 {
         let point = DVec2::new(i as f64, other as f64) / self.n as f64;
         // The integer part, which is zero or one.
         (point + shift).map(|x| if x < 1.0 { x } else { x - 1.0 })
@@ -83,7 +94,8 @@ mod tests {
         let lattice = Fibonacci::at_least(100);
         assert_eq!(lattice.len(), 144);
         let mut rows: Vec<f64> =
-            (0..144).map(|i| lattice.point(i, DVec2::ZERO).y).collect();
+            lattice.between(0.0, 1.0, DVec2::ZERO).map(|p| p.y).collect();
+        assert_eq!(rows.len(), 144);
         rows.sort_by(f64::total_cmp);
         for (i, y) in rows.into_iter().enumerate() {
             assert!((y - i as f64 / 144.0).abs() < 1e-15);
@@ -93,8 +105,10 @@ mod tests {
     #[test]
     fn the_largest_lattice_does_not_overflow() {
         let lattice = Fibonacci::at_least(u64::MAX);
-        let p = lattice.point(lattice.len() - 1, DVec2::ZERO);
-        assert!(p.min_element() > 0.0 && p.max_element() < 1.0);
+        let last = 1.0 - 1.0 / lattice.len() as f64;
+        for p in lattice.between(last, 1.0, DVec2::ZERO).take(3) {
+            assert!(p.min_element() > 0.0 && p.max_element() < 1.0, "{p}");
+        }
     }
 
     #[test]

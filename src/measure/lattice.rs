@@ -260,8 +260,7 @@ impl Column {
         self.rows.resize(usize_of(rows) + 1, 0);
         let [from, to] = [number, number + 1].map(|i| i as f64 / columns as f64);
         for (replicate, &shift) in (0..).zip(shifts) {
-            for i in lattice.between(from - shift.x, to - shift.x) {
-                let p = lattice.point(i, shift);
+            for p in lattice.between(from, to, shift) {
                 if cell(p.x, columns) == number {
                     let row = cell(p.y, rows);
                     self.rows[usize_of(row) + 1] += 1;
