@@ -13,16 +13,37 @@ pub(crate) struct Fibonacci {
     generator: u64,
 }
 
+/// The largest Fibonacci number whose products with its points fit 64 bits.
+const LAST: u64 = 4_807_526_976;
+
 impl Fibonacci {
     /// The lattice with at least this many points, up to 4 807 526 976 of them.
     pub(crate) fn at_least(points: u64) -> Self {
-        /// The largest Fibonacci number whose products with its points fit 64 bits.
-        const LAST: u64 = 4_807_526_976;
         let (mut generator, mut n) = (1, 2);
         while n < points && n < LAST {
             (generator, n) = (n, generator + n);
         }
         Self { n, generator }
+    }
+
+    /// A larger lattice: if possible at least `wanted` times as large, and at most `most`
+    /// times.
+    pub(crate) fn grown(&self, wanted: f64, most: f64) -> Option<Self> {
+        let n = self.n as f64;
+        let mut grown = None;
+        let mut next = *self;
+        while next.n < LAST {
+            next = Self { n: next.generator + next.n, generator: next.n };
+            let factor = next.n as f64 / n;
+            if factor > most {
+                break;
+            }
+            grown = Some(next);
+            if factor >= wanted {
+                break;
+            }
+        }
+        grown
     }
 
     /// How many points it has.

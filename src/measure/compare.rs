@@ -6,7 +6,7 @@ use super::estimate::Estimate;
 use super::lattice::{
     Beam, REPLICATES, Round, Samples, Sampling, Tally, rounds, student,
 };
-use super::volume::{Sum, estimate, is_nothing};
+use super::volume::{Sum, estimate, growth, is_nothing};
 use crate::progress::Progress;
 use crate::scene::{BunchTracer, Chords, CompileError, CompileOptions, Scene};
 use crate::solid::Solid;
@@ -130,12 +130,18 @@ pub fn compare_with(
         },
         |round, rays| {
             let now = comparison(round, rays);
-            let fine = |e: &Estimate| e.target_met || e.value == 0.0;
-            now.verdict != Verdict::Undecided && fine(&now.a) && fine(&now.b)
+            let wanted = |e: &Estimate| {
+                if e.value == 0.0 { 1.0 } else { growth(e, sampling.rel_tol) }
+            };
+            let undecided = if now.verdict == Verdict::Undecided { MORE } else { 1.0 };
+            undecided.max(wanted(&now.a)).max(wanted(&now.b))
         },
     );
     Ok(comparison(&round, rays))
 }
+
+/// How many times as many rays are tried where a verdict is not clear.
+const MORE: f64 = 2.0;
 
 fn both_empty() -> Comparison {
     let nothing = Estimate::exact(0.0);

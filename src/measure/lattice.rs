@@ -144,9 +144,10 @@ pub(super) struct Samples<'a> {
     pub(super) replicates: &'a [u8],
 }
 
-/// Rounds of ever larger lattices until `enough` says so or a limit is reached. Returns the
+/// Rounds of ever larger lattices until one is enough or a limit is reached. Returns the
 /// last round that was finished and the number of rays of all that were.
 ///
+/// `growth` says of a round how many times as many rays are wanted, 1 or less if it is enough.
 /// `scratch` makes what a thread needs, `sample` adds rays to the tallies of their lattices.
 pub(super) fn rounds<S, T: Tally>(
     beam: &Beam,
@@ -154,7 +155,7 @@ pub(super) fn rounds<S, T: Tally>(
     progress: Progress<'_>,
     scratch: impl Fn() -> S + Sync + Send,
     sample: impl Fn(&mut S, &Samples<'_>, &mut [T; REPLICATES]) + Sync + Send,
-    mut enough: impl FnMut(&Round<T>, u64) -> bool,
+    mut growth: impl FnMut(&Round<T>, u64) -> f64,
 ) -> (Round<T>, u64) {
     let start = Instant::now();
     let deadline = sampling.time_limit.and_then(|limit| start.checked_add(limit));
@@ -167,20 +168,22 @@ pub(super) fn rounds<S, T: Tally>(
         let found = round(beam, seed, lattice, deadline, progress, &scratch, &sample);
         let Some(round) = found else { return (last, rays) };
         rays += lattice.len() * REPLICATES as u64;
-        if enough(&round, rays) {
+        let wanted = growth(&round, rays);
+        if wanted <= 1.0 {
             return (round, rays);
         }
         last = round;
-        let next = Fibonacci::at_least(2 * lattice.len());
-        let growth = next.len() as f64 / lattice.len() as f64;
-        let took = start.elapsed() - before;
-        let late = sampling
-            .time_limit
-            .is_some_and(|limit| start.elapsed() + took.mul_f64(growth) > limit);
-        let more = next.len() * REPLICATES as u64;
-        if late || rays + more > sampling.max_rays || next.len() == lattice.len() {
+        let took = (start.elapsed() - before).as_secs_f64();
+        let left = sampling.time_limit.map_or(f64::INFINITY, |limit| {
+            limit.saturating_sub(start.elapsed()).as_secs_f64()
+        });
+        let most = (left / took).min(
+            (sampling.max_rays.saturating_sub(rays)) as f64
+                / (lattice.len() * REPLICATES as u64) as f64,
+        );
+        let Some(next) = lattice.grown(wanted, most) else {
             return (last, rays);
-        }
+        };
         lattice = next;
     }
 }

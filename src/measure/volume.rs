@@ -73,11 +73,32 @@ pub fn volume_with(
         |round, rays| {
             let hopeless = rays >= sampling.max_rays / PATIENCE
                 && round.replicates.iter().all(|sum| sum.hits == 0);
-            hopeless
-                || estimate(&beam, round, rays, sampling.rel_tol, |sum| *sum).target_met
+            let now = estimate(&beam, round, rays, sampling.rel_tol, |sum| *sum);
+            if hopeless { 0.0 } else { growth(&now, sampling.rel_tol) }
         },
     );
     estimate(&beam, &round, rays, sampling.rel_tol, |sum| *sum)
+}
+
+/// How many times as many rays an estimate takes to meet its target, 1 or less if it does. The
+/// error falls like the number of rays to some power between 1 and 1½; for the larger one too
+/// few rays cost another round, for the smaller one too many would be wasted.
+pub(super) fn growth(estimate: &Estimate, rel_tol: f64) -> f64 {
+    /// Bounds for what the spread of a small round can promise.
+    const LEAST: f64 = 1.5;
+    const MOST: f64 = 64.0;
+    /// Where it promises nothing.
+    const UNKNOWN: f64 = 4.0;
+    const POWER: f64 = 1.5;
+    let [low, high] = estimate.interval;
+    let ratio = 0.5 * (high - low) / (rel_tol * estimate.value);
+    if estimate.target_met {
+        1.0
+    } else if estimate.resolved && ratio.is_finite() {
+        ratio.powf(1.0 / POWER).clamp(LEAST, MOST)
+    } else {
+        UNKNOWN
+    }
 }
 
 /// When no ray has met the solid after this part of the allowed rays, it is given up: the
