@@ -77,6 +77,7 @@ mod angle;
 mod bvh;
 mod census;
 mod color;
+mod eight;
 mod fan;
 mod lanes;
 pub mod measure;

@@ -7,6 +7,7 @@ mod support;
 use glam::{DAffine3, DVec3, dvec3};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use solidray::measure::{self, Sampling};
+use solidray::render::{self, Camera, Projection};
 use solidray::{Mesh, MeshError, OpenEdge, Ray, Scene, Solid, Span};
 use support::aim::{self, at_feature};
 use support::dice::Dice;
@@ -228,4 +229,57 @@ fn n23_volumes_by_rays_are_those_by_the_divergence_theorem() {
         }
     }
     assert!(failures.len() <= checks / 30, "{failures:#?}");
+}
+
+/// Blocks of rays look at faces together: lattices of rays through corners and along edges,
+/// rays that run apart or not, from outside and inside, tiles that are not full.
+#[test]
+fn pictures_of_meshes_show_what_single_rays_meet() {
+    let ball = meshes::icosphere(3);
+    let cut = |mesh: &Mesh| {
+        Solid::mesh(mesh.clone()) - Solid::ball(0.5).translated(dvec3(0.4, 0.5, 0.6))
+    };
+    let far = DAffine3::from_translation(dvec3(148_376.0, 1234.0, -223_423.0));
+    let turned = DAffine3::from_axis_angle(DVec3::ONE.normalize(), 0.7)
+        * DAffine3::from_scale(dvec3(1.0, -0.3, 2.0));
+    let mut solids: Vec<Solid> = on_a_lattice().into_iter().map(Solid::mesh).collect();
+    solids.extend([
+        cut(&meshes::jittered(&ball, 0.1, 3)),
+        Solid::ball(0.9) - Solid::mesh(ball.clone()).scaled(dvec3(2.0, 0.4, 0.4)),
+        Solid::mesh(meshes::icosphere(5))
+            - Solid::mesh(ball.clone()).scaled(DVec3::splat(0.99)),
+        Solid::mesh(meshes::mapped(&ball, &far)),
+        Solid::mesh(ball.clone()).mapped(far),
+        Solid::mesh(ball).mapped(turned),
+        Solid::mesh(meshes::needle(1e8)),
+        Solid::mesh(meshes::with_slivers(&meshes::icosphere(2), 5e-10)),
+    ]);
+    let mut hits = 0;
+    for (i, solid) in solids.into_iter().enumerate() {
+        let scene = scene(&solid);
+        let (center, size) = (scene.bounds().center(), scene.bounds().size());
+        for (from, step) in [
+            (DVec3::Z, 4.0),
+            (dvec3(1.0, 1.0, 0.0), 2.0),
+            (dvec3(0.3, -0.7, 0.2), 0.9),
+            (dvec3(0.2, 0.1, 0.4), 0.3),
+        ] {
+            let eye = center + step * size.max_element() * from;
+            let camera = [eye.x, eye.y, eye.z, center.x, center.y, center.z];
+            for projection in [Projection::Orthographic, Projection::Perspective] {
+                let camera =
+                    Camera::vector(camera).expect("an eye").with_projection(projection);
+                let view = camera.view([65, 40], &scene.bounds());
+                let frame = render::trace(&scene, &view, [0.5, 0.5], &|_| {});
+                let mut tracer = scene.tracer();
+                for (x, y) in (0..40).flat_map(|y| (0..65).map(move |x| (x, y))) {
+                    let hit = tracer.first_hit(&frame.ray(x, y));
+                    let place = format!("{i}, {from}, {projection:?}, ({x}, {y})");
+                    assert_eq!(frame.hit(x, y), hit, "{place}");
+                    hits += u32::from(hit.is_some());
+                }
+            }
+        }
+    }
+    assert!(hits > 60_000, "only {hits} hits");
 }

@@ -61,7 +61,8 @@ impl Mesh {
 
     /// The corners of one face.
     pub(crate) fn corners(&self, face: usize) -> [DVec3; 3] {
-        self.faces[face].map(|i| self.points[i as usize])
+        let [a, b, c] = self.faces[face];
+        [self.points[a as usize], self.points[b as usize], self.points[c as usize]]
     }
 
     /// The smallest box around the points that faces use.

@@ -14,18 +14,19 @@
 //! "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013, whose inclusive edge tests
 //! suffice for first hits but not for this.
 
-use std::cmp::Ordering;
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use robust::{Coord, orient2d};
 
 use super::doubt::{Local, Spot, U};
 use super::line::inverse_power_of_two;
+use super::pack::{Keep, Kept, Linear, Pack, Sight};
 use super::place::{Frame, ToLocal};
 use super::{Line, Sink, Surface};
 use crate::aabb::Aabb;
-use crate::bvh::{Bvh, Slabs};
+use crate::bvh::{Bvh, Slabs, Visitor};
+use crate::eight::{EIGHT, Eight, with_eight};
 use crate::mesh::Mesh;
 use crate::ray::Sense;
 
@@ -33,7 +34,9 @@ use crate::ray::Sense;
 #[derive(Debug)]
 pub(crate) struct IndexedMesh {
     mesh: Arc<Mesh>,
+    /// Over packs.
     faces: Bvh,
+    packs: Vec<Pack>,
     /// The power of two that brings the coordinates to about 1, so that products of them
     /// are neither too large nor too small to be exact.
     scale: f64,
@@ -41,12 +44,17 @@ pub(crate) struct IndexedMesh {
 
 impl IndexedMesh {
     pub(crate) fn new(mesh: Arc<Mesh>) -> Self {
-        let boxes: Vec<Aabb> =
-            (0..mesh.faces().len()).map(|i| Aabb::around(mesh.corners(i))).collect();
-        let faces = Bvh::new(&boxes);
+        let corners = |i: u32| mesh.corners(i as usize);
+        let boxes = (0..face_count(&mesh)).map(|i| (i, Aabb::around(corners(i))));
+        let mut packs = Vec::new();
+        let faces = Bvh::grouped(boxes, EIGHT, |unit, faces| {
+            packs.push(Pack::new(&mesh, unit, faces));
+            u32::try_from(packs.len() - 1).expect("there are fewer packs than faces")
+        });
+        packs.shrink_to_fit();
         let bounds = faces.bounds();
         let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-        Self { mesh, faces, scale: inverse_power_of_two(largest) }
+        Self { mesh, faces, packs, scale: inverse_power_of_two(largest) }
     }
 
     /// The largest coordinates.
@@ -106,21 +114,138 @@ impl Polyhedron {
 impl Polyhedron {
     /// Hands over all crossings with a line.
     pub(super) fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
-        let origin = self.to_local.origin_of(line);
-        let dir = self.to_local.direction(line.dir);
-        let IndexedMesh { mesh, faces, scale } = &*self.mesh;
-        // A mesh too small to be told from a point of the scene.
-        if !origin.is_finite() || !dir.is_finite() || dir == DVec3::ZERO {
+        let Some((origin, dir)) = self.in_frame(line) else { return };
+        let IndexedMesh { mesh, faces, packs, scale } = &*self.mesh;
+        let slabs = Slabs::new(origin, dir, &faces.bounds());
+        if !slabs.cross(&faces.bounds()) {
             return;
         }
-        let moves = DVec3::AXES.map(|axis| self.to_local.direction(axis));
-        let shear = Shear::new(*scale, origin, dir, moves);
-        faces.crossed(&Slabs::new(origin, dir, &faces.bounds()), |face| {
-            let corners = mesh.corners(face as usize).map(|p| shear.map(p));
-            if let Some((t, sense)) = crossing(corners, &shear) {
-                sink.crossing(t, face, sense);
+        let shear = Shear::new(*scale, origin, dir, &self.to_local.linear);
+        let probe = faces.probe(&slabs);
+        let sight = Sight::new(&probe, shear.axes, shear.shift);
+        faces.visited(&probe, Crossed { mesh, packs, sight, shear, sink });
+    }
+}
+
+/// For rays that are looked at together.
+impl Polyhedron {
+    /// The box around the mesh in its own frame.
+    pub(crate) fn local_bounds(&self) -> Aabb {
+        self.mesh.faces.bounds()
+    }
+
+    /// Adds the numbers of the packs that a region may meet: the points
+    /// `center + s along + b` with s from −1 to 1 and no coordinate of b larger than `breadth`,
+    /// in the mesh's frame.
+    pub(crate) fn packs_in(
+        &self,
+        (center, along, breadth): (DVec3, DVec3, DVec3),
+        packs: &mut Vec<u32>,
+    ) {
+        let faces = &self.mesh.faces;
+        let slabs = Slabs::new(center, along, &faces.bounds());
+        faces.crossed_by(&slabs, breadth, |pack| packs.push(pack));
+    }
+
+    /// The function `weights · (p − origin) + constant` of points of the mesh, which is off by
+    /// `error` already.
+    pub(crate) fn linear(
+        &self,
+        weights: DVec3,
+        origin: DVec3,
+        constant: f64,
+        error: f64,
+    ) -> Linear {
+        Linear::new(self.mesh.faces.unit(), weights, origin, constant, error)
+    }
+
+    /// Sorts out the faces of packs that are on the positive side of a plane, and says between
+    /// which depths the others are.
+    pub(crate) fn keep(
+        &self,
+        numbers: &[u32],
+        planes: &[Linear; 4],
+        depth: &Linear,
+        kept: &mut Vec<Kept>,
+    ) {
+        let packs = &self.mesh.packs;
+        with_eight(Keep { packs, numbers, planes, depth, kept });
+    }
+
+    /// The number of a face of a pack, and its corners in the units of the tree, rounded to
+    /// single precision.
+    #[inline]
+    pub(crate) fn face_of_pack(&self, pack: u32, bit: u32) -> Option<(u32, [DVec3; 3])> {
+        let pack = &self.mesh.packs[pack as usize];
+        Some((pack.face(bit)?, pack.corners(bit)))
+    }
+
+    /// A linear map of points seen from an origin as one of points in the units of the tree,
+    /// and what is to be added to that.
+    pub(crate) fn seen_in_units(&self, map: DMat3, origin: DVec3) -> (DMat3, DVec3) {
+        let unit = self.mesh.faces.unit();
+        unit.map(map, origin)
+    }
+
+    /// A face and its corners.
+    #[inline]
+    pub(crate) fn face(&self, face: u32) -> (u32, [DVec3; 3]) {
+        (face, self.mesh.mesh.corners(face as usize))
+    }
+
+    /// What says where a line crosses a face with these corners, and whether it goes in or
+    /// out there, the same as among all crossings.
+    pub(crate) fn crosser<'a>(
+        &'a self,
+        line: &Line,
+    ) -> Option<impl FnMut([DVec3; 3]) -> Option<(f64, Sense)> + use<'a>> {
+        let (origin, dir) = self.in_frame(line)?;
+        let shear = Shear::new(self.mesh.scale, origin, dir, &self.to_local.linear);
+        Some(move |corners: [DVec3; 3]| crossing(corners, &shear))
+    }
+
+    /// The origin and the direction of a line in the frame of the mesh; nothing of a mesh too
+    /// small to be told from a point of the scene.
+    fn in_frame(&self, line: &Line) -> Option<(DVec3, DVec3)> {
+        let origin = self.to_local.origin_of(line);
+        let dir = self.to_local.direction(line.dir);
+        (origin.is_finite() && dir.is_finite() && dir != DVec3::ZERO)
+            .then_some((origin, dir))
+    }
+}
+
+/// Finds the faces that a line crosses.
+struct Crossed<'a, 'b> {
+    mesh: &'a Mesh,
+    packs: &'a [Pack],
+    sight: Sight,
+    shear: Shear<'a>,
+    sink: &'a mut Sink<'b>,
+}
+
+impl Visitor for Crossed<'_, '_> {
+    #[inline(always)]
+    fn end<S: Eight>(&mut self, simd: S, end: u32) {
+        let near = self.packs[end as usize].near(simd, &self.sight);
+        if near != 0 {
+            self.look_at(end, near);
+        }
+    }
+}
+
+impl Crossed<'_, '_> {
+    /// Looks at the faces of a pack whose bits are set.
+    fn look_at(&mut self, pack: u32, mut near: u32) {
+        let pack = &self.packs[pack as usize];
+        while near != 0 {
+            if let Some(face) = pack.face(near.trailing_zeros())
+                && let Some((t, sense)) =
+                    crossing(self.mesh.corners(face as usize), &self.shear)
+            {
+                self.sink.crossing(t, face, sense);
             }
-        });
+            near &= near - 1;
+        }
     }
 }
 
@@ -133,23 +258,21 @@ impl Surface for Polyhedron {
     /// The plane of a triangle, its value not divided by the length of its normal.
     ///
     /// Beside what moves the point, corners are moved by the shear: by at most 10 u times
-    /// their distance from the line's origin. The normal is wrong by at most 16 u times the product
-    /// of two edges, and the place on the line, a mean of those of the corners, by at most 24 u times
-    /// their range for each unit in the ratio of the square of an edge, as seen along the line, to
-    /// the area: for needles that is not small.
+    /// their distance from the line's origin. The crossing is found between points of two
+    /// edges that are interpolated along them, which leaves it at most 16 u times an edge beside
+    /// the triangle. The normal is wrong by at most 16 u times the product of two edges.
     fn local(&self, spot: &Spot<'_>, face: u32) -> Local {
         let (origin, dir, moved) = self.seen_from(spot);
         let [a, b, c] = self.mesh.mesh.corners(face as usize);
         let (ab, ac) = (b - a, c - a);
         let (normal, edge) = (ab.cross(ac), ab.length().max(ac.length()));
         let far = [a, b, c].map(|p| (p - origin).abs().max_element());
-        let sheared = 10.0 * U * far.into_iter().fold(edge, f64::max);
+        let sheared = 26.0 * U * far.into_iter().fold(edge, f64::max);
         let to_point = origin + spot.t * dir - a;
         let slope = normal.dot(dir);
         let normal_rounding = 16.0 * U * ab.length() * ac.length();
         let rounding = normal.abs().dot(moved + DVec3::splat(sheared))
-            + normal_rounding * to_point.length()
-            + slope.abs() * self.mean_rounding([a, b, c], origin, dir);
+            + normal_rounding * to_point.length();
         Local {
             value: normal.dot(to_point),
             rounding,
@@ -161,8 +284,7 @@ impl Surface for Polyhedron {
     }
 
     fn faces(&self) -> u32 {
-        u32::try_from(self.mesh.mesh.faces().len())
-            .expect("a mesh has at most u32::MAX faces")
+        face_count(&self.mesh.mesh)
     }
 
     /// The faces on which the place is, give or take rounding: those whose planes it is near and
@@ -173,11 +295,13 @@ impl Surface for Polyhedron {
         let far = bounds.min.abs().max(bounds.max.abs()).max(origin.abs());
         let pad = 4.0 * (moved + DVec3::splat(20.0 * U * far.max_element()));
         let point = origin + spot.t * dir;
-        self.mesh.faces.around(&Aabb::new(point - pad, point + pad), |face| {
-            let local = self.local(spot, face);
-            let corners = self.mesh.mesh.corners(face as usize);
-            if local.is_near() && is_beside(point, corners, pad.length()) {
-                visit(face, &local);
+        self.mesh.faces.around(&Aabb::new(point - pad, point + pad), |pack| {
+            for face in self.mesh.packs[pack as usize].faces() {
+                let local = self.local(spot, face);
+                let corners = self.mesh.mesh.corners(face as usize);
+                if local.is_near() && is_beside(point, corners, pad.length()) {
+                    visit(face, &local);
+                }
             }
         });
     }
@@ -220,19 +344,10 @@ impl Polyhedron {
                 + 4.0 * U * t.abs() * line.dir.abs());
         (self.to_local.origin_of(line), self.to_local.direction(line.dir), moved)
     }
+}
 
-    /// At most how wrong the mean of the places of three corners on a line is by its weights.
-    fn mean_rounding(&self, corners: [DVec3; 3], origin: DVec3, dir: DVec3) -> f64 {
-        let shear = Shear::new(self.mesh.scale, origin, dir, DVec3::AXES);
-        let [a, b, c] = corners.map(|p| shear.map(p));
-        let (low, high) =
-            (a.along.min(b.along).min(c.along), a.along.max(b.along).max(c.along));
-        let (ab, ac) = (b.beside - a.beside, c.beside - a.beside);
-        let area = ab.perp_dot(ac).abs();
-        let edges = ab.length_squared().max(ac.length_squared());
-        let range = (high - low) * shear.step;
-        if area > 0.0 { range * (24.0 * U * edges / area).min(1.0) } else { range }
-    }
+fn face_count(mesh: &Mesh) -> u32 {
+    u32::try_from(mesh.faces().len()).expect("a mesh has at most u32::MAX faces")
 }
 
 /// Whether a point near the plane of a triangle is over it or this near to an edge.
@@ -252,7 +367,7 @@ fn distance_to_edge(point: DVec3, a: DVec3, b: DVec3) -> f64 {
 }
 
 /// The map that takes a line to the third axis.
-struct Shear {
+struct Shear<'a> {
     /// A power of two that brings all coordinates seen from the origin to 1 or less.
     scale: f64,
     origin: DVec3,
@@ -265,9 +380,8 @@ struct Shear {
     speed: f64,
     /// What a place along the line must be multiplied by to count in its directions.
     step: f64,
-    /// Where the moved line is seen: by each world axis, the first before the others, and
-    /// by both axes of the plane should rounding have made those parallel.
-    moves: [DVec2; 5],
+    /// The directions of the world's axes.
+    world: &'a DMat3,
 }
 
 /// A point seen along the line: how far beside it, and where along it.
@@ -277,29 +391,36 @@ struct Corner {
     along: f64,
 }
 
-impl Shear {
+impl<'a> Shear<'a> {
     /// The scale is that of the mesh.
-    fn new(scale: f64, origin: DVec3, dir: DVec3, moves: [DVec3; 3]) -> Self {
+    fn new(scale: f64, origin: DVec3, dir: DVec3, world: &'a DMat3) -> Self {
         let scale = scale.min(inverse_power_of_two(origin.abs().max_element()));
         let step = (inverse_power_of_two(dir.abs().max_element()) / scale).min(f64::MAX);
         let dir = level(dir);
         let z = dir.abs().max_position();
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         let shift = DVec2::new(dir[x], dir[y]) / dir[z];
-        let [first, second, third] =
-            moves.map(level).map(|m| flushed(DVec2::new(m[x], m[y]) - shift * m[z]));
-        let moves = [first, second, third, DVec2::X, DVec2::Y];
         let (axes, origin) = ([x, y, z], scale * origin);
-        Self { scale, origin, axes, shift, speed: dir[z], step, moves }
+        Self { scale, origin, axes, shift, speed: dir[z], step, world }
     }
 
-    fn map(&self, point: DVec3) -> Corner {
+    /// Where a point is seen, and where along the third axis.
+    #[inline]
+    fn seen(&self, point: DVec3) -> (DVec2, f64) {
         let p = self.scale * point - self.origin;
         let [x, y, z] = self.axes;
-        Corner {
-            beside: flushed(DVec2::new(p[x], p[y]) - self.shift * p[z]),
-            along: p[z] / self.speed,
-        }
+        (flushed(DVec2::new(p[x], p[y]) - self.shift * p[z]), p[z])
+    }
+
+    /// Where the moved line is seen: by each world axis, the first before the others, and
+    /// by both axes of the plane should rounding have made those parallel.
+    #[cold]
+    fn moves(&self) -> [DVec2; 5] {
+        let [x, y, z] = self.axes;
+        let axes = [self.world.x_axis, self.world.y_axis, self.world.z_axis];
+        let [first, second, third] =
+            axes.map(level).map(|m| flushed(DVec2::new(m[x], m[y]) - self.shift * m[z]));
+        [first, second, third, DVec2::X, DVec2::Y]
     }
 }
 
@@ -319,46 +440,66 @@ fn flushed(p: DVec2) -> DVec2 {
 ///
 /// A triangle that is counter-clockwise seen from where the third axis goes faces away from
 /// where it comes from, so a line along it comes out there.
-fn crossing([a, b, c]: [Corner; 3], shear: &Shear) -> Option<(f64, Sense)> {
-    let bc = turn(b.beside, c.beside);
+fn crossing(corners: [DVec3; 3], shear: &Shear<'_>) -> Option<(f64, Sense)> {
+    let [a, b, c] = corners;
+    let ((a, a_z), (b, b_z), (c, c_z)) = (shear.seen(a), shear.seen(b), shear.seen(c));
+    let bc = turn(b, c);
     let is_left = shear.is_left_turn(bc, b, c)?;
-    let ca = turn(c.beside, a.beside);
+    let ca = turn(c, a);
     if shear.is_left_turn(ca, c, a)? != is_left {
         return None;
     }
-    let ab = turn(a.beside, b.beside);
+    let ab = turn(a, b);
     if shear.is_left_turn(ab, a, b)? != is_left {
         return None;
     }
-    let t = along([a, b, c], [bc, ca, ab]) * shear.step;
+    let corner = |beside, z| Corner { beside, along: z / shear.speed };
+    let corners = [corner(a, a_z), corner(b, b_z), corner(c, c_z)];
+    let t = along(corners, [bc, ca, ab]) * shear.step;
     Some((t, if is_left == (shear.speed > 0.0) { Sense::Exit } else { Sense::Enter }))
 }
 
 /// Twice the signed area of the triangle of the line, `a` and `b`; its sign is exact.
+///
+/// Two products and their difference are off by less than `3 u (|p| + |q|)`, so beyond that
+/// the sign is certain (J. R. Shewchuk, as above, the bound of stage A in §4.1; here all three
+/// are given numbers and no coordinate is a difference, so it is even `2 u`).
 fn turn(a: DVec2, b: DVec2) -> f64 {
+    let (p, q) = (a.x * b.y, a.y * b.x);
+    let turn = p - q;
+    if turn.abs() > 4.0 * U * (p.abs() + q.abs()) { turn } else { exact_turn(a, b) }
+}
+
+#[cold]
+fn exact_turn(a: DVec2, b: DVec2) -> f64 {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     orient2d(coord(a), coord(b), Coord { x: 0.0, y: 0.0 })
 }
 
-impl Shear {
+impl Shear<'_> {
     /// Whether the triangle of the line, `a` and `b`, of which `turn` is the area, turns
     /// left when the line is moved; `None` for two corners in the same place.
     ///
     /// A move by m adds m × (a − b) to the area. Where the area is zero, a and b are in one
     /// line with the origin, so a − b is a multiple of either: the sign of the product with
     /// that one is exact, that of the product with a rounded difference would not be.
-    fn is_left_turn(&self, turn_of_edge: f64, a: Corner, b: Corner) -> Option<bool> {
-        if turn_of_edge != 0.0 {
-            return Some(turn_of_edge > 0.0);
+    fn is_left_turn(&self, turn_of_edge: f64, a: DVec2, b: DVec2) -> Option<bool> {
+        if turn_of_edge == 0.0 {
+            return self.is_left_turn_when_moved(a, b);
         }
-        let step = a.beside - b.beside;
-        let along = if a.beside == DVec2::ZERO { b.beside } else { a.beside };
+        Some(turn_of_edge > 0.0)
+    }
+
+    #[cold]
+    fn is_left_turn_when_moved(&self, a: DVec2, b: DVec2) -> Option<bool> {
+        let step = a - b;
+        let along = if a == DVec2::ZERO { b } else { a };
         let axis = along.abs().max_position();
         if step[axis] == 0.0 {
             return None;
         }
         let reversed = (step[axis] > 0.0) != (along[axis] > 0.0);
-        let sides = self.moves.map(|m| turn(m, along));
+        let sides = self.moves().map(|m| turn(m, along));
         sides.into_iter().find(|&side| side != 0.0).map(|side| (side > 0.0) != reversed)
     }
 }
@@ -397,7 +538,11 @@ fn along_face(mut corners: [Corner; 3]) -> f64 {
     let [a, b, c] = corners.map(|corner| corner.beside);
     let axis = (a.max(b).max(c) - a.min(b).min(c)).max_position();
     let key = |c: &Corner| (c.beside[axis], c.beside[1 - axis], c.along);
-    corners.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal));
+    for (i, k) in [(0, 1), (1, 2), (0, 1)] {
+        if key(&corners[k]) < key(&corners[i]) {
+            corners.swap(i, k);
+        }
+    }
     let [low, middle, high] = corners;
     let one = passed(low, high, axis);
     let other = if middle.beside[axis] > 0.0 {
@@ -409,6 +554,7 @@ fn along_face(mut corners: [Corner; 3]) -> f64 {
 }
 
 /// The place between two where a coordinate is zero, or one of them where it never is.
+#[inline]
 fn passed(from: Corner, to: Corner, axis: usize) -> Corner {
     let part = -from.beside[axis] / (to.beside[axis] - from.beside[axis]);
     let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
@@ -438,7 +584,8 @@ mod tests {
         let faces =
             (0..5_000).flat_map(|i| faces.map(|f| f.map(|k| k + 4 * i))).collect();
         let mesh = Arc::new(Mesh::new(points, faces).expect("tetrahedra are closed"));
-        let bytes = IndexedMesh::new(mesh).faces.bytes();
+        let indexed = IndexedMesh::new(mesh);
+        let bytes = indexed.faces.bytes() + size_of_val(&*indexed.packs);
         assert!(bytes <= 110 * 20_000, "{} bytes a triangle", bytes / 20_000);
     }
 }

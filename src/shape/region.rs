@@ -13,6 +13,7 @@ use glam::DVec3;
 use super::cuboid::Cuboid;
 use super::doubt::U;
 use super::half_space::HalfSpace;
+use super::place::ToLocal;
 use super::plane::Plane;
 use super::quadric::Quadric;
 use super::wall::Wall;
@@ -97,6 +98,14 @@ impl Region {
     /// Whether it may meet a box.
     pub(crate) fn meets(&self, b: &Aabb) -> bool {
         self.part_in(b, self.rounding).is_some()
+    }
+
+    /// Its middle, its half along and how far it comes beside that on each axis, in the frame
+    /// of a leaf.
+    pub(crate) fn seen_from(&self, to_local: &ToLocal) -> (DVec3, DVec3, DVec3) {
+        let [a, b] = self.sides.map(|side| to_local.direction(side).abs());
+        let room = to_local.linear.abs() * DVec3::splat(self.rounding);
+        (to_local.point(self.center), to_local.direction(self.along), a + b + room)
     }
 
     /// What a leaf in a box is to it whose surfaces lie no farther than `slack` beside the true

@@ -18,6 +18,8 @@ mod block;
 mod bunch;
 mod flat;
 mod known;
+mod mesh;
+mod meshes;
 mod packet;
 mod sight;
 mod survey;

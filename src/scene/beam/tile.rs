@@ -4,6 +4,7 @@ use pulp::Arch;
 
 use super::block::{BLOCK, Block};
 use super::flat::Firsts;
+use super::meshes::Sightings;
 use super::packet::Packet;
 use super::sight::Sight;
 use super::survey::{List, Survey};
@@ -46,28 +47,29 @@ pub(crate) struct Tile<'a> {
 /// Scratch memory for tiles of rays through a scene; one for each thread.
 #[derive(Debug)]
 pub(crate) struct TileTracer<'a> {
-    scene: &'a Scene,
-    survey: Survey<'a>,
-    blocks: Vec<Block>,
+    pub(super) scene: &'a Scene,
+    pub(super) survey: Survey<'a>,
+    pub(super) blocks: Vec<Block>,
     /// Which rays of each block are to be traced still.
-    open: [u64; BLOCKS],
+    pub(super) open: [u64; BLOCKS],
     /// Which blocks have lines.
     has_lines: u32,
-    hits: Vec<Option<Crossing>>,
+    pub(super) hits: Vec<Option<Crossing>>,
     packet: Packet,
+    pub(super) sightings: Sightings,
     /// For blocks with many leaves or with stretches that end together.
-    many: Tracer<'a>,
+    pub(super) many: Tracer<'a>,
     /// For rays of which a tile is not sure.
-    alone: Tracer<'a>,
+    pub(super) alone: Tracer<'a>,
 }
 
 /// Some blocks of a tile between two depths.
 #[derive(Clone, Copy, Debug)]
-struct Cell {
+pub(super) struct Cell {
     /// The first block, and how many blocks each way.
-    block: usize,
-    side: usize,
-    depth: [f64; 2],
+    pub(super) block: usize,
+    pub(super) side: usize,
+    pub(super) depth: [f64; 2],
 }
 
 impl<'a> TileTracer<'a> {
@@ -85,6 +87,7 @@ impl<'a> TileTracer<'a> {
             has_lines: 0,
             hits: vec![None; BLOCKS * BLOCK],
             packet: Packet::new(arch),
+            sightings: Sightings::default(),
             many: scene.tracer(),
             alone: scene.tracer(),
         }
@@ -186,6 +189,9 @@ impl<'a> TileTracer<'a> {
     fn trace(&mut self, part: &Part<'_>, list: &List) {
         let Part { tile, cell, .. } = part;
         self.make_lines(tile, cell.block);
+        if self.trace_meshes(part, list) {
+            return;
+        }
         let (open, block) = (self.open[cell.block], &self.blocks[cell.block]);
         let (known, leaves) = self.survey.found(list);
         self.packet.choose(self.scene, known, leaves, tile.fan.dir.middle);
@@ -250,10 +256,15 @@ impl TileTracer<'_> {
 
 impl Tile<'_> {
     /// A ray of a block.
-    fn ray_of(&self, block: usize, ray: usize) -> Ray {
-        let [i, j] = block_place(block);
-        let [right, up] = (self.at)(i + ray % BLOCK_SIDE, j + ray / BLOCK_SIDE);
+    pub(super) fn ray_of(&self, block: usize, ray: usize) -> Ray {
+        let [right, up] = self.place_of(block, ray);
         self.fan.ray(right, up)
+    }
+
+    /// Where in the fan a ray of a block is.
+    pub(super) fn place_of(&self, block: usize, ray: usize) -> [f64; 2] {
+        let [i, j] = block_place(block);
+        (self.at)(i + ray % BLOCK_SIDE, j + ray / BLOCK_SIDE)
     }
 
     /// The places of the first and the last of some rays, counted from a block.
@@ -268,17 +279,17 @@ impl Tile<'_> {
 
 impl Cell {
     /// The rays of the cell between its depths, and some more.
-    fn region(&self, tile: &Tile<'_>, sight: &Sight<'_>) -> Region {
+    pub(super) fn region(&self, tile: &Tile<'_>, sight: &Sight<'_>) -> Region {
         sight.region(tile.corners(self.block, self.side * BLOCK_SIDE), self.depth)
     }
 }
 
 /// A cell of a tile.
 #[derive(Clone, Copy)]
-struct Part<'a> {
-    tile: &'a Tile<'a>,
-    sight: &'a Sight<'a>,
-    cell: Cell,
+pub(super) struct Part<'a> {
+    pub(super) tile: &'a Tile<'a>,
+    pub(super) sight: &'a Sight<'a>,
+    pub(super) cell: Cell,
 }
 
 /// The number of a ray in its tile. Blocks are numbered so that those of a quarter follow

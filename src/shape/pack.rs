@@ -1,0 +1,245 @@
+//! Eight triangles side by side, for what a line certainly passes by.
+
+use glam::{DVec2, DVec3};
+
+use crate::bvh::{Probe, Unit};
+use crate::eight::{EIGHT, Eight, Numbers, WithEight};
+use crate::mesh::Mesh;
+
+/// Up to eight faces of a mesh and their corners, in the units of a tree and in single
+/// precision: 320 bytes.
+#[derive(Clone, Debug)]
+pub(super) struct Pack {
+    /// By corner and axis.
+    corners: [[[f32; EIGHT]; 3]; 3],
+    /// [`NONE`] behind the last face.
+    faces: [u32; EIGHT],
+}
+
+/// No face has this number.
+const NONE: u32 = u32::MAX;
+
+impl Pack {
+    #[expect(clippy::cast_possible_truncation, reason = "there is room for rounding")]
+    pub(super) fn new(mesh: &Mesh, unit: &Unit, faces: &[u32]) -> Self {
+        let mut pack = Self { corners: [[[0.0; EIGHT]; 3]; 3], faces: [NONE; EIGHT] };
+        for (i, &face) in faces.iter().enumerate() {
+            pack.faces[i] = face;
+            let corners = mesh.corners(face as usize).map(|p| unit.point(p));
+            for (numbers, corner) in pack.corners.iter_mut().zip(corners) {
+                for (axis, x) in numbers.iter_mut().zip(corner.to_array()) {
+                    axis[i] = x as f32;
+                }
+            }
+        }
+        pack
+    }
+
+    pub(super) fn faces(&self) -> impl Iterator<Item = u32> {
+        self.faces.into_iter().take_while(|&face| face != NONE)
+    }
+
+    /// How many faces there are.
+    #[inline(always)]
+    fn count(&self) -> u32 {
+        let mut count = 0;
+        for face in self.faces {
+            count += u32::from(face != NONE);
+        }
+        count
+    }
+
+    /// A face by the number of its bit, if there are so many.
+    pub(super) fn face(&self, bit: u32) -> Option<u32> {
+        Some(self.faces[bit as usize]).filter(|&face| face != NONE)
+    }
+
+    /// The corners of a face by the number of its bit, in the units of the tree.
+    #[inline]
+    pub(super) fn corners(&self, bit: u32) -> [DVec3; 3] {
+        let [a, b, c] = &self.corners;
+        let i = bit as usize;
+        let corner = |[x, y, z]: &[[f32; EIGHT]; 3]| {
+            DVec3::new(f64::from(x[i]), f64::from(y[i]), f64::from(z[i]))
+        };
+        [corner(a), corner(b), corner(c)]
+    }
+
+    /// A bit for each face that is not certainly passed by.
+    ///
+    /// A face is passed by if the line is on the left of one edge and on the right of another:
+    /// if the triangles that it makes with them have areas of different signs. With coordinates
+    /// off by at most δ, as [`Sight`] has it, and at most X and Y seen along the line, an area
+    /// `x y' − y x'` is off by 2 δ (X + Y) + 2 δ², and by 4 e X Y for its own rounding,
+    /// e = 2⁻²⁴. That is at most 12 e (X + Y), as coordinates are at most 6, and δ > 32 e.
+    #[inline(always)]
+    pub(super) fn near<S: Eight>(&self, simd: S, sight: &Sight) -> u32 {
+        let [a, b, c] = &self.corners;
+        let [ax, ay] = sight.beside(simd, a);
+        let [bx, by] = sight.beside(simd, b);
+        let [cx, cy] = sight.beside(simd, c);
+        let bc = bx * cy - by * cx;
+        let ca = cx * ay - cy * ax;
+        let ab = ax * by - ay * bx;
+        let x = ax.abs().max(bx.abs()).max(cx.abs());
+        let y = ay.abs().max(by.abs()).max(cy.abs());
+        let [room, least] = sight.room.map(|number| Numbers::same(simd, number));
+        let error = (x + y) * room + least;
+        let zero = Numbers::same(simd, 0.0);
+        let is_left = error.less(bc.max(ca).max(ab));
+        let is_right = bc.min(ca).min(ab).less(zero - error);
+        !(is_left & is_right) & 0xff
+    }
+}
+
+/// Some linear functions of places in the units of a tree, and how far off they may be
+/// found in single precision.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Linear {
+    weights: [f32; 3],
+    constant: f32,
+    /// The error, and no less in single precision.
+    error: f64,
+    room: f32,
+}
+
+impl Linear {
+    /// The function `weights · (p − origin) + constant` of points of a mesh, which is off by
+    /// `error` already.
+    ///
+    /// With weights whose absolute values add up to W, a constant C and places of at most 1
+    /// there are at most 8 roundings by e = 2⁻²⁴ of no more than W + C each.
+    #[expect(clippy::cast_possible_truncation, reason = "there is room for rounding")]
+    pub(super) fn new(
+        unit: &Unit,
+        weights: DVec3,
+        origin: DVec3,
+        constant: f64,
+        error: f64,
+    ) -> Self {
+        let (weights, away) = unit.linear(weights, origin);
+        let constant = away + constant;
+        let size = weights.abs().element_sum() + constant.abs();
+        let error = error + size * (16.0 / 16_777_216.0);
+        Self {
+            weights: weights.to_array().map(|w| w as f32),
+            constant: constant as f32,
+            error,
+            room: (error as f32).next_up(),
+        }
+    }
+
+    #[inline(always)]
+    fn of<S: Eight>(&self, simd: S, corner: &[[f32; EIGHT]; 3]) -> Numbers<S> {
+        let [x, y, z] = self.weights.map(|weight| Numbers::same(simd, weight));
+        let [a, b, c] = corner;
+        Numbers::load(simd, a) * x
+            + Numbers::load(simd, b) * y
+            + Numbers::load(simd, c) * z
+            + Numbers::same(simd, self.constant)
+    }
+}
+
+/// Faces of a pack that are not all on the wrong side of some planes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kept {
+    pub(crate) pack: u32,
+    /// A bit for each face.
+    pub(crate) faces: u32,
+    /// Between which values of a function they all are.
+    pub(crate) range: [f64; 2],
+}
+
+/// Sorts out the faces of packs that are on the positive side of a plane.
+pub(super) struct Keep<'a> {
+    pub(super) packs: &'a [Pack],
+    pub(super) numbers: &'a [u32],
+    pub(super) planes: &'a [Linear; 4],
+    pub(super) depth: &'a Linear,
+    pub(super) kept: &'a mut Vec<Kept>,
+}
+
+impl WithEight for Keep<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_eight<S: Eight>(self, simd: S) {
+        let Self { packs, numbers, planes, depth, kept } = self;
+        for &number in numbers {
+            let pack = &packs[number as usize];
+            let [a, b, c] = &pack.corners;
+            let mut out = 0;
+            for plane in planes {
+                let least =
+                    plane.of(simd, a).min(plane.of(simd, b)).min(plane.of(simd, c));
+                out |= Numbers::same(simd, plane.room).less(least);
+            }
+            let mut faces = !out & ((1_u32 << pack.count()) - 1);
+            if faces == 0 {
+                continue;
+            }
+            let [p, q, r] = [depth.of(simd, a), depth.of(simd, b), depth.of(simd, c)];
+            let (least, most) = (p.min(q).min(r).store(), p.max(q).max(r).store());
+            let mut range = [f32::INFINITY, f32::NEG_INFINITY];
+            let all = faces;
+            while faces != 0 {
+                let i = faces.trailing_zeros() as usize;
+                range = [range[0].min(least[i]), range[1].max(most[i])];
+                faces &= faces - 1;
+            }
+            let range =
+                [f64::from(range[0]) - depth.error, f64::from(range[1]) + depth.error];
+            kept.push(Kept { pack: number, faces: all, range });
+        }
+    }
+}
+
+/// A line in the units of a tree, along which triangles are looked at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight {
+    /// Those across the line, and the one along it.
+    axes: [usize; 3],
+    shift: [f32; 2],
+    origin: [f32; 2],
+    /// What the error of an area is: this for each unit of coordinates, and this.
+    room: [f32; 2],
+}
+
+impl Sight {
+    /// The line of a probe, which moves by `shift` on the first two axes for each step on the
+    /// third.
+    ///
+    /// With `e = 2⁻²⁴`, corners of at most 1, an origin of at most 1.8 and shifts of at most
+    /// 1, coordinates across are off by 15.2 e, and by twice what rounding in double precision
+    /// has done: the sum of what each operation of [`Sight::beside`] adds.
+    #[expect(clippy::cast_possible_truncation, reason = "there is room for rounding")]
+    pub(super) fn new(probe: &Probe, axes: [usize; 3], shift: DVec2) -> Self {
+        let origin: DVec3 = probe.origin;
+        let [x, y, z] = axes;
+        let off = 2.0 * probe.pad;
+        Self {
+            axes,
+            shift: [shift.x as f32, shift.y as f32],
+            origin: [
+                (origin[x] - shift.x * origin[z]) as f32,
+                (origin[y] - shift.y * origin[z]) as f32,
+            ],
+            room: [(3.0 * off) as f32, (4.0 * off * off) as f32],
+        }
+    }
+
+    /// Where corners are, seen along the line.
+    #[inline(always)]
+    fn beside<S: Eight>(&self, simd: S, corner: &[[f32; EIGHT]; 3]) -> [Numbers<S>; 2] {
+        let [x, y, z] = self.axes;
+        let along = Numbers::load(simd, &corner[z]);
+        [
+            Numbers::load(simd, &corner[x])
+                - along * Numbers::same(simd, self.shift[0])
+                - Numbers::same(simd, self.origin[0]),
+            Numbers::load(simd, &corner[y])
+                - along * Numbers::same(simd, self.shift[1])
+                - Numbers::same(simd, self.origin[1]),
+        ]
+    }
+}
