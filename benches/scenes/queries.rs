@@ -31,8 +31,7 @@ pub(crate) fn spans(tracer: &mut Tracer<'_>, rays: &[Ray]) -> usize {
 
 /// Counts the points inside.
 pub(crate) fn inside(scene: &Scene, points: &[DVec3]) -> usize {
-    let mut tracer = scene.tracer();
-    points.iter().filter(|&&point| tracer.contains(point)).count()
+    scene.contains_all(points).into_iter().filter(|&inside| inside).count()
 }
 
 /// The rays through the centres of all pixels, row by row.

@@ -27,6 +27,7 @@ mod survey;
 mod tests;
 mod tile;
 mod walk;
+mod work;
 
 pub(crate) use bunch::{Bunch, BunchTracer, Chords};
 pub(super) use known::{Known, Place};

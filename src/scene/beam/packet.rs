@@ -8,6 +8,7 @@ use super::flat::{Firsts, Lengths, is_simple};
 use super::known::Known;
 use super::survey::Candidate;
 use super::walk::{Ends, FEW, Logic, Step, Walk};
+use super::work::Work;
 use crate::ray::{Crossing, Sense};
 use crate::scene::program::Combine;
 use crate::scene::trace::is_within;
@@ -28,6 +29,7 @@ pub(super) struct Packet {
     ends: Ends,
     firsts: Box<Firsts>,
     lengths: Box<Lengths>,
+    pub(super) work: Work,
 }
 
 impl Packet {
@@ -42,6 +44,7 @@ impl Packet {
             ends: Vec::new(),
             firsts: Box::new(Firsts::EMPTY),
             lengths: Box::new(Lengths::EMPTY),
+            work: Work::default(),
         }
     }
 
@@ -112,6 +115,8 @@ impl Packet {
     /// left out.
     pub(super) fn meet(&mut self, scene: &Scene, block: &Block, wanted: u64) {
         self.used = 0;
+        self.work.meetings +=
+            self.candidates.len() as u64 * u64::from(wanted.count_ones());
         for (number, &Candidate { leaf, faces }) in self.candidates.iter().enumerate() {
             let shape = &scene.shapes[leaf as usize];
             let complement = scene.literals[leaf as usize].complement;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::known::{Known, Place};
+use super::work::Work;
 use crate::scene::Scene;
 use crate::shape::{ALL, Region, Side};
 
@@ -22,6 +23,7 @@ pub(super) struct Survey<'a> {
     candidates: Vec<Candidate>,
     /// What the leaves of the lists are to the regions for which they were looked at.
     sides: Vec<Side>,
+    pub(super) work: Work,
 }
 
 /// A list of leaves that can matter.
@@ -41,7 +43,8 @@ impl List {
 impl<'a> Survey<'a> {
     pub(super) fn new(scene: &'a Scene) -> Self {
         let known = Known::new(scene);
-        Self { scene, known, candidates: Vec::new(), sides: Vec::new() }
+        let (candidates, sides) = (Vec::new(), Vec::new());
+        Self { scene, known, candidates, sides, work: Work::default() }
     }
 
     /// The leaves that a region may meet.
@@ -59,6 +62,8 @@ impl<'a> Survey<'a> {
     /// unless the solid is all of the region or none. To be followed by [`Survey::leave`].
     pub(super) fn enter(&mut self, region: &Region, list: &List) -> Option<List> {
         let first_side = self.sides.len();
+        self.work.regions += 1;
+        self.work.sides += list.len() as u64;
         for i in list.leaves.clone() {
             let Candidate { leaf, faces } = self.candidates[i];
             let number = leaf as usize;

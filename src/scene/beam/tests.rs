@@ -5,7 +5,8 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use pulp::Arch;
 
-use super::{Bunch, BunchTracer, Chords, Tile, TileTracer};
+use super::work::Work;
+use super::{Bunch, BunchTracer, Chords, SIDE, Tile, TileTracer};
 use crate::fan::{Fan, Linear};
 use crate::op::Op;
 use crate::ray::{Crossing, Span};
@@ -14,6 +15,12 @@ use crate::support::model::{Leaf, Model};
 use crate::support::strategies::{
     coordinate, direction, length, model, op, place, placed_leaf,
 };
+
+#[expect(dead_code, reason = "the benchmarks need more of it")]
+#[path = "../../../benches/scenes/mod.rs"]
+mod scenes;
+
+use scenes::Subject;
 
 /// A fan and the step from a ray to the next, such that rays often are on lattices. Its middle
 /// ray goes through the origin.
@@ -170,5 +177,63 @@ proptest! {
     ) {
         let fan = aimed(&fan, &model, at, aside);
         assert_same_spans(&compiled(&model), &fan, step, size);
+    }
+}
+
+/// What tiles do for a picture of 256 × 256 rays of a scene that speed is measured on, for each
+/// thousand rays.
+fn work_for_a_picture(name: &str) -> Work {
+    const SIZE: usize = 256;
+    let subject = Subject::named(name);
+    let scene = Scene::compile(&subject.solid).expect("a sound solid");
+    let forward = DVec3::new(-0.62, -0.53, -0.58).normalize();
+    let right = forward.cross(DVec3::Z).normalize();
+    let (up, middle) = (right.cross(forward), subject.bounds.center());
+    let middle = middle - subject.bounds.size().length() * forward;
+    let origin = Linear { middle, right, up };
+    let fan = Fan { origin, dir: Linear::constant(forward) };
+    let step = 2.0 * subject.half_height / SIZE as f64;
+    let place = |i: usize| (i as f64 + 0.5 - 0.5 * SIZE as f64) * step;
+    let mut tiles = TileTracer::new(&scene);
+    let side = SIDE as usize;
+    for row in (0..SIZE).step_by(side) {
+        for column in (0..SIZE).step_by(side) {
+            let at = |i: usize, j: usize| [place(column + i), place(row + j)];
+            let tile = Tile { fan: &fan, size: [side; 2], at: &at };
+            tiles.first_hits(&tile, |_, _, _| ());
+        }
+    }
+    let per_thousand = |count: u64| count * 1000 / (SIZE * SIZE) as u64;
+    let Work { regions, sides, meetings, walks, searches } = tiles.work();
+    Work {
+        regions: per_thousand(regions),
+        sides: per_thousand(sides),
+        meetings: per_thousand(meetings),
+        walks: per_thousand(walks),
+        searches: per_thousand(searches),
+    }
+}
+
+/// What culling saves would be seen here if it were lost: without regions each ray meets all
+/// leaves. The numbers for each thousand rays are those measured and a tenth more.
+#[test]
+fn rays_of_a_picture_meet_few_leaves() {
+    for (name, most) in [
+        ("classic", [38, 116, 2_100, 230]),
+        ("spheres-1k", [96, 1_150, 6_200, 270]),
+        ("spheres-10k", [94, 5_600, 13_800, 820]),
+        ("plate-1k", [42, 910, 4_600, 810]),
+        ("plate-10k", [36, 6_100, 22_900, 540]),
+        ("menger-3", [77, 720, 3_750, 150]),
+        ("deep-50", [43, 180, 1_800, 560]),
+        ("deep-200", [92, 840, 3_750, 1_170]),
+    ] {
+        let Work { regions, sides, meetings, walks, searches } = work_for_a_picture(name);
+        let work = [regions, sides, meetings, walks];
+        assert!(
+            work.iter().zip(most).all(|(&work, most)| work <= most),
+            "{name}: {work:?}"
+        );
+        assert!(meetings > 0 && searches <= 1, "{name}: {searches} searches");
     }
 }

@@ -9,6 +9,8 @@ use super::packet::Packet;
 use super::sight::Sight;
 use super::survey::{List, Survey};
 use super::walk::{Outcome, first};
+#[cfg(test)]
+use super::work::Work;
 use crate::fan::Fan;
 use crate::ray::{Crossing, Ray};
 use crate::scene::trace::Change;
@@ -91,6 +93,14 @@ impl<'a> TileTracer<'a> {
             many: scene.tracer(),
             alone: scene.tracer(),
         }
+    }
+
+    /// What has been done so far.
+    #[cfg(test)]
+    pub(super) fn work(&self) -> Work {
+        let mut work = self.survey.work;
+        work += self.packet.work;
+        work
     }
 
     /// What [`Tracer::first_hit`] says of each ray of a tile, by column and row.
@@ -197,6 +207,7 @@ impl<'a> TileTracer<'a> {
         self.packet.choose(self.scene, known, leaves, tile.fan.dir.middle);
         self.packet.meet(self.scene, block, open);
         let mut open = self.enter_at_once(cell, open);
+        self.packet.work.walks += u64::from(open.count_ones());
         while open != 0 {
             let ray = open.trailing_zeros() as usize;
             open &= open - 1;
@@ -217,11 +228,15 @@ impl<'a> TileTracer<'a> {
                         Change::None => continue,
                         Change::First(crossing) => Some(crossing),
                         Change::Collapsed => {
+                            self.packet.work.searches += 1;
                             self.alone.first_hit(&tile.ray_of(cell.block, ray))
                         }
                     }
                 }
-                Outcome::Collapsed => self.alone.first_hit(&tile.ray_of(cell.block, ray)),
+                Outcome::Collapsed => {
+                    self.packet.work.searches += 1;
+                    self.alone.first_hit(&tile.ray_of(cell.block, ray))
+                }
             };
             self.hits[cell.block * BLOCK + ray] = hit;
             self.open[cell.block] &= !(1 << ray);
