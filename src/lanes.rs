@@ -266,10 +266,9 @@ impl<L: Lanes> Vec3<L> {
         self.x.abs().max(self.y.abs()).max(self.z.abs())
     }
 
-    /// The sum of the absolute values.
     #[inline(always)]
-    pub(crate) fn sum_of_sizes(self) -> L {
-        self.x.abs() + self.y.abs() + self.z.abs()
+    pub(crate) fn is_finite(self) -> L::Mask {
+        self.x.is_finite() & self.y.is_finite() & self.z.is_finite()
     }
 
     #[inline(always)]

@@ -236,7 +236,8 @@ proptest! {
     }
 
     /// The ends of union and intersection together are those of both operands, bit by bit:
-    /// so are the lengths, but for the rounding of their sum.
+    /// so are the lengths, but for the rounding of their sum. Surfaces of both that coincide but
+    /// for rounding have to be there for that, even if only one is asked.
     #[test]
     fn n31_union_and_intersection_together_have_the_ends_of_both(
         a in model(),
@@ -244,7 +245,8 @@ proptest! {
         aims in aims(),
     ) {
         prop_assume!(fits(&a) && fits(&b));
-        let scenes = [or(&a, &b), and(&a, &b), a.clone(), b.clone()]
+        let beside = |a, b| or(a, &minus(b, b));
+        let scenes = [or(&a, &b), and(&a, &b), beside(&a, &b), beside(&b, &a)]
             .map(|model| in_common_frame(&model));
         for ray in rays(&or(&a, &b), &aims) {
             let [or, and, a, b] = scenes.each_ref().map(|scene| ends_in(scene, &ray));

@@ -98,15 +98,14 @@ impl<L: Lanes> Lines<L> {
     pub(crate) fn new(origin: Vec3<L>, dir: Vec3<L>, bounds: &Aabb) -> (Self, L::Mask) {
         let like = origin.x;
         let (zero, infinity) = (like.same(0.0), like.same(f64::INFINITY));
+        let is_finite = origin.is_finite() & dir.is_finite();
         let largest = dir.largest();
         let size = like.same(1.0 / inverse_power_of_two(bounds.size().max_element()));
         let scale = largest.inverse_power_of_two();
         // One factor after the other: their product need not be a number.
         let (dir, scale) = (dir.scaled(scale).scaled(size), scale * size);
         let is_normal = !scale.less(like.same(f64::MIN_POSITIVE)) & scale.less(infinity);
-        // What is not a number is not below infinity either.
-        let is_valid =
-            is_normal & zero.less(largest) & origin.sum_of_sizes().less(infinity);
+        let is_valid = is_normal & zero.less(largest) & is_finite;
 
         let [near, far] = within(origin, dir, bounds);
         // A range that is not finite belongs to a line too far away to be told apart.
