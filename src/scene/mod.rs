@@ -174,7 +174,9 @@ impl Scene {
         let Crossing { t, leaf, face, sense } = *crossing;
         let outward = self.shapes[leaf as usize].surface().normal(ray.at(t), face);
         let level = inverse_power_of_two(outward.abs().max_element());
-        let unit = (level * outward).normalize_or(ray.dir.normalize_or(DVec3::Z));
+        let unit = (level * outward)
+            .try_normalize()
+            .unwrap_or_else(|| ray.dir.normalize_or(DVec3::Z));
         let against = unit.dot(ray.dir) <= 0.0;
         if against == (sense == Sense::Enter) { unit } else { -unit }
     }
