@@ -28,6 +28,11 @@ impl Fan {
         Ray::new(self.origin.at(right, up), self.dir.at(right, up))
     }
 
+    /// The direction of all rays, if they have the same.
+    pub(crate) fn common_dir(&self) -> Option<DVec3> {
+        self.is_parallel().then(|| self.ray(0.0, 0.0).dir)
+    }
+
     /// Whether all rays run the same way.
     pub(crate) fn is_parallel(&self) -> bool {
         self.dir.right == DVec3::ZERO && self.dir.up == DVec3::ZERO

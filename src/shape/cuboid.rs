@@ -9,7 +9,7 @@ use super::place::Frame;
 use super::plane::Plane;
 use super::stretch::Stretch;
 use crate::aabb::Aabb;
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Vec3};
 
 /// A parallelepiped. Faces 0 to 5 are −x, +x, −y, +y, −z, +z of the box in its own frame.
 #[derive(Clone, Debug)]
@@ -32,8 +32,27 @@ impl Cuboid {
 
     /// Where lines are inside, as far as some of the faces say.
     #[inline(always)]
-    pub(crate) fn stretch<L: Lanes>(&self, faces: u32, rays: &Rays<L>) -> Stretch<L> {
-        Plane::stretch(&self.planes, faces, rays)
+    pub(crate) fn stretch<L: Lanes>(
+        &self,
+        faces: u32,
+        rays: &Rays<L>,
+        speeds: &[L; 6],
+    ) -> Stretch<L> {
+        Plane::stretch(&self.planes, faces, rays, speeds)
+    }
+
+    /// What depends on the direction of lines alone.
+    #[inline(always)]
+    pub(crate) fn speeds<L: Lanes>(&self, dir: Vec3<L>) -> [L; 6] {
+        let [a, b, c, d, e, f] = &self.planes;
+        [
+            a.speed(dir),
+            b.speed(dir),
+            c.speed(dir),
+            d.speed(dir),
+            e.speed(dir),
+            f.speed(dir),
+        ]
     }
 
     pub(crate) fn bounds(frame: &Frame, min: DVec3, max: DVec3) -> Aabb {

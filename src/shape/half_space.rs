@@ -26,7 +26,8 @@ impl HalfSpace {
     /// Where lines are inside.
     #[inline(always)]
     pub(crate) fn stretch<L: Lanes>(&self, rays: &Rays<L>) -> Stretch<L> {
-        Plane::stretch(&self.planes, ALL, rays)
+        let [plane] = &self.planes;
+        Plane::stretch(&self.planes, ALL, rays, &[plane.speed(rays.dir)])
     }
 
     /// Bounded on one side if the plane is square to an axis.

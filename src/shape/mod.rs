@@ -229,11 +229,15 @@ impl Shape {
     /// away whose bits are zero.
     pub(crate) fn crossings(&self, faces: u32, line: &Line, sink: &mut Sink<'_>) {
         match self {
-            Self::Cuboid(leaf) => sink.stretch(&leaf.stretch(faces, &line.into())),
+            Self::Cuboid(leaf) => {
+                let speeds = leaf.speeds(line.dir.into());
+                sink.stretch(&leaf.stretch(faces, &line.into(), &speeds));
+            }
             Self::HalfSpace(leaf) => sink.stretch(&leaf.stretch(&line.into())),
             Self::Polyhedron(leaf) => leaf.crossings(line, sink),
             Self::Quadric(leaf) => {
-                let stretches = leaf.stretches(faces, &line.into());
+                let courses = leaf.courses(line.dir.into());
+                let stretches = leaf.stretches(faces, &line.into(), &courses);
                 let slots = leaf.slots(faces);
                 stretches[..slots].iter().for_each(|stretch| sink.stretch(stretch));
             }

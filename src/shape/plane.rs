@@ -93,13 +93,12 @@ impl Plane {
     /// A line within the plane is inside if it would be after a small move along the normal:
     /// solids on the two sides of a plane share such lines out.
     #[inline(always)]
-    fn inside<L: Lanes>(&self, rays: &Rays<L>) -> [L; 2] {
-        let Rays { origin, rest, dir } = *rays;
+    fn inside<L: Lanes>(&self, rays: &Rays<L>, speed: L) -> [L; 2] {
+        let Rays { origin, rest, .. } = *rays;
         let like = origin.x;
         let (never, always) = (like.same(f64::INFINITY), like.same(f64::NEG_INFINITY));
         let zero = like.same(0.0);
         let normal = Vec3::same(like, self.normal);
-        let speed = normal.dot(dir);
         let to_plane = (like.same(self.offset) - normal.dot(origin)) - normal.dot(rest);
         let (parallel, rising) = (speed.equal(zero), zero.less(speed));
         let is_above = !zero.less(to_plane);
@@ -119,14 +118,21 @@ impl Plane {
         planes: &[Self],
         wanted: u32,
         rays: &Rays<L>,
+        speeds: &[L],
     ) -> Stretch<L> {
         let mut stretch = Stretch::all(rays.origin.x);
-        for (face, plane) in (0..).zip(planes) {
+        for ((face, plane), &speed) in (0..).zip(planes).zip(speeds) {
             if wanted >> face & 1 == 1 {
-                let [from, to] = plane.inside(rays);
+                let [from, to] = plane.inside(rays, speed);
                 stretch = stretch.cut(from, to, face);
             }
         }
         stretch
+    }
+
+    /// How fast lines rise above the plane, in lengths of the normal.
+    #[inline(always)]
+    pub(super) fn speed<L: Lanes>(&self, dir: Vec3<L>) -> L {
+        Vec3::same(dir.x, self.normal).dot(dir)
     }
 }

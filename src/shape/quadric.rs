@@ -9,9 +9,9 @@ use super::place::Frame;
 use super::plane::Plane;
 use super::primitive::Profile;
 use super::stretch::Stretch;
-use super::wall::Wall;
+use super::wall::{Course, Wall};
 use crate::aabb::Aabb;
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Vec3};
 
 /// A quadric. Face 0 is the curved one, 1 the bottom and 2 the top.
 #[derive(Clone, Debug)]
@@ -19,6 +19,14 @@ pub(crate) struct Quadric {
     pub(super) wall: Wall,
     /// Absent where the profile ends by itself: a whole ball.
     pub(super) planes: Option<[Plane; 2]>,
+}
+
+/// The direction of lines, as the faces of a quadric see it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Courses<L> {
+    wall: Course<L>,
+    /// If there are any.
+    planes: [L; 2],
 }
 
 impl Quadric {
@@ -47,12 +55,13 @@ impl Quadric {
         &self,
         faces: u32,
         rays: &Rays<L>,
+        courses: &Courses<L>,
     ) -> [Stretch<L>; 2] {
         let planes = match &self.planes {
             Some(planes) => &planes[..],
             None => &[],
         };
-        let mut between = Plane::stretch(planes, faces >> 1, rays);
+        let mut between = Plane::stretch(planes, faces >> 1, rays, &courses.planes);
         // The faces of the planes come after that of the wall.
         let one = between.enter_face.same(1.0);
         between.enter_face = between.enter_face + one;
@@ -60,8 +69,18 @@ impl Quadric {
         if faces & 1 == 0 {
             return [between; 2];
         }
-        let [[a, b], [c, d]] = self.wall.inside(rays);
+        let [[a, b], [c, d]] = self.wall.inside(rays, &courses.wall);
         [between.cut(a, b, 0), between.cut(c, d, 0)]
+    }
+
+    /// What depends on the direction of lines alone.
+    #[inline(always)]
+    pub(crate) fn courses<L: Lanes>(&self, dir: Vec3<L>) -> Courses<L> {
+        let planes = match &self.planes {
+            Some([bottom, top]) => [bottom.speed(dir), top.speed(dir)],
+            None => [dir.x; 2],
+        };
+        Courses { wall: self.wall.course(dir), planes }
     }
 
     pub(crate) fn bounds(frame: &Frame, profile: Profile, bottom: f64, top: f64) -> Aabb {

@@ -56,10 +56,13 @@ impl Wall {
 
     /// Where `q ≤ 0` on lines: one or two stretches of each, perhaps infinite, perhaps empty.
     #[inline(always)]
-    pub(super) fn inside<L: Lanes>(&self, rays: &Rays<L>) -> [[L; 2]; 2] {
-        let course = self.course(rays.dir);
-        let Approach { moved, p, b, .. } = self.approach(&course, rays);
-        let Course { a, step, .. } = course;
+    pub(super) fn inside<L: Lanes>(
+        &self,
+        rays: &Rays<L>,
+        course: &Course<L>,
+    ) -> [[L; 2]; 2] {
+        let Approach { moved, p, b, .. } = self.approach(course, rays);
+        let Course { a, step, .. } = *course;
         let c = self.profile.value(p);
         let like = a;
         let (never, always) = (like.same(f64::INFINITY), like.same(f64::NEG_INFINITY));
@@ -101,7 +104,7 @@ impl Wall {
 
     /// What depends on the direction of lines alone.
     #[inline(always)]
-    fn course<L: Lanes>(&self, dir: Vec3<L>) -> Course<L> {
+    pub(super) fn course<L: Lanes>(&self, dir: Vec3<L>) -> Course<L> {
         let dir = dir.mapped(&self.to_local.linear);
         // Where the scene is far larger than the leaf, squares of steps are no numbers.
         let step = dir.largest().inverse_power_of_two();
@@ -133,7 +136,8 @@ impl Wall {
 }
 
 /// The direction of lines in the frame of a wall.
-struct Course<L> {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Course<L> {
     dir: Vec3<L>,
     /// `dir` in multiples of the lines' direction.
     step: L,

@@ -1,5 +1,6 @@
 //! The rays of a tile, side by side, and where they are inside of leaves.
 
+use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::aabb::Aabb;
@@ -19,6 +20,8 @@ pub(super) struct Block {
     /// Those of the rays, then those of the lines.
     origin: [Numbers; 3],
     dir: [Numbers; 3],
+    /// The direction, first of the rays and then of the lines, if all have the same.
+    common_dir: Option<DVec3>,
     rest: [Numbers; 3],
     pub(super) offset: Numbers,
     scale: Numbers,
@@ -59,10 +62,16 @@ impl Block {
     pub(super) const EMPTY: Self = Self {
         origin: [[0.0; BLOCK]; 3],
         dir: [[0.0; BLOCK]; 3],
+        common_dir: None,
         rest: [[0.0; BLOCK]; 3],
         offset: [0.0; BLOCK],
         scale: [0.0; BLOCK],
     };
+
+    /// Says whether all rays that are going to be set run the same way.
+    pub(super) fn set_common_dir(&mut self, dir: Option<DVec3>) {
+        self.common_dir = dir;
+    }
 
     pub(super) fn set_ray(&mut self, i: usize, ray: &Ray) {
         for axis in 0..3 {
@@ -126,12 +135,31 @@ impl WithSimd for MakeLines<'_> {
     type Output = u64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> u64 {
+    fn with_simd<S: Simd>(mut self, simd: S) -> u64 {
+        // What depends on a direction alone is found once where all have the same.
+        match self.block.common_dir {
+            Some(dir) => {
+                let met = self.make(simd, Some(Vec3::same(zero(simd), dir)));
+                let [x, y, z] = self.block.dir.each_ref().map(|numbers| numbers[0]);
+                self.block.common_dir = Some(DVec3::new(x, y, z));
+                met
+            }
+            None => self.make(simd, None),
+        }
+    }
+}
+
+impl MakeLines<'_> {
+    #[inline(always)]
+    fn make<S: Simd>(&mut self, simd: S, common: Option<Vec3<Vector<S>>>) -> u64 {
         let Self { block, bounds } = self;
         let mut met = [0.0; BLOCK];
         for i in 0..BLOCK / S::F64_LANES {
             let origin = load3(simd, &block.origin, i);
-            let dir = load3(simd, &block.dir, i);
+            let dir = match common {
+                Some(dir) => dir,
+                None => load3(simd, &block.dir, i),
+            };
             let (lines, valid) = Lines::new(origin, dir, bounds);
             let Lines { rays: Rays { origin, rest, dir }, offset, scale } = lines;
             store3(&mut block.origin, i, origin);
@@ -158,36 +186,85 @@ impl WithSimd for Stretches<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { block, shape, faces, wanted, slots: [first, second] } = self;
-        let twice = slots_of(shape, faces) == 2;
-        for i in 0..BLOCK / S::F64_LANES {
-            if wanted >> (i * S::F64_LANES) & (u64::MAX >> (64 - S::F64_LANES)) == 0 {
-                continue;
-            }
-            let rays = block.rays(simd, i);
-            match shape {
-                Shape::Cuboid(leaf) => first.put(i, leaf.stretch(faces, &rays)),
-                Shape::HalfSpace(leaf) => first.put(i, leaf.stretch(&rays)),
-                Shape::Quadric(leaf) => {
-                    let [one, other] = leaf.stretches(faces, &rays);
-                    first.put(i, one);
-                    if twice {
-                        second.put(i, other);
-                    }
-                }
-                Shape::Polyhedron(_) => {}
-            }
+        match self.block.common_dir {
+            Some(dir) => self.find(simd, Some(Vec3::same(zero(simd), dir))),
+            None => self.find(simd, None),
         }
     }
 }
 
+impl Stretches<'_> {
+    #[inline(always)]
+    fn find<S: Simd>(self, simd: S, common: Option<Vec3<Vector<S>>>) {
+        let Self { block, shape, faces, wanted, slots: [first, second] } = self;
+        let twice = slots_of(shape, faces) == 2;
+        let dir = match common {
+            Some(dir) => dir,
+            None => load3(simd, &block.dir, 0),
+        };
+        // What depends on a direction alone is found once where all have the same.
+        match shape {
+            Shape::Cuboid(leaf) => {
+                let mut speeds = leaf.speeds(dir);
+                for i in 0..BLOCK / S::F64_LANES {
+                    if is_wanted::<S>(wanted, i) {
+                        let rays = block.rays(simd, i, common);
+                        if common.is_none() {
+                            speeds = leaf.speeds(rays.dir);
+                        }
+                        first.put(i, leaf.stretch(faces, &rays, &speeds));
+                    }
+                }
+            }
+            Shape::HalfSpace(leaf) => {
+                for i in 0..BLOCK / S::F64_LANES {
+                    if is_wanted::<S>(wanted, i) {
+                        first.put(i, leaf.stretch(&block.rays(simd, i, common)));
+                    }
+                }
+            }
+            Shape::Quadric(leaf) => {
+                let mut courses = leaf.courses(dir);
+                for i in 0..BLOCK / S::F64_LANES {
+                    if is_wanted::<S>(wanted, i) {
+                        let rays = block.rays(simd, i, common);
+                        if common.is_none() {
+                            courses = leaf.courses(rays.dir);
+                        }
+                        let [one, other] = leaf.stretches(faces, &rays, &courses);
+                        first.put(i, one);
+                        if twice {
+                            second.put(i, other);
+                        }
+                    }
+                }
+            }
+            Shape::Polyhedron(_) => {}
+        }
+    }
+}
+
+/// Whether any ray of packet `i` is wanted.
+#[inline(always)]
+pub(super) fn is_wanted<S: Simd>(wanted: u64, i: usize) -> bool {
+    wanted >> (i * S::F64_LANES) & (u64::MAX >> (64 - S::F64_LANES)) != 0
+}
+
 impl Block {
     #[inline(always)]
-    fn rays<S: Simd>(&self, simd: S, i: usize) -> Rays<Vector<S>> {
+    fn rays<S: Simd>(
+        &self,
+        simd: S,
+        i: usize,
+        common: Option<Vec3<Vector<S>>>,
+    ) -> Rays<Vector<S>> {
         Rays {
             origin: load3(simd, &self.origin, i),
             rest: load3(simd, &self.rest, i),
-            dir: load3(simd, &self.dir, i),
+            dir: match common {
+                Some(dir) => dir,
+                None => load3(simd, &self.dir, i),
+            },
         }
     }
 }
@@ -216,6 +293,12 @@ impl Slot {
         store(&mut self.enter_face, i, enter_face);
         store(&mut self.exit_face, i, exit_face);
     }
+}
+
+/// Zero for all rays of a packet.
+#[inline(always)]
+fn zero<S: Simd>(simd: S) -> Vector<S> {
+    Vector(simd, simd.splat_f64s(0.0))
 }
 
 /// The numbers of packet `i`.

@@ -121,6 +121,7 @@ impl<'a> BunchTracer<'a> {
 
     /// Finds where rays of a block are inside the leaves; says which rays may meet the solid.
     fn meet(&mut self, fan: &Fan, places: &[[f64; 2]]) -> u64 {
+        self.block.set_common_dir(fan.common_dir());
         for (i, &[right, up]) in places.iter().enumerate() {
             self.block.set_ray(i, &fan.ray(right, up));
         }

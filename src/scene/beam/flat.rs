@@ -7,17 +7,20 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::block::{BLOCK, Block, Numbers, Slot, load, store};
+use super::block::{BLOCK, Block, Numbers, Slot, is_wanted, load, store};
 use crate::lanes::{Lanes, Vector};
 
-/// The most leaves to be outside of.
+/// The most leaves to be outside of for which chords are found.
 const MOST_CUTS: usize = 8;
 
 /// Whether leaves, of which these are the slots, are of this kind.
 pub(super) fn is_simple(slots: &[Slot]) -> bool {
     slots.iter().all(|slot| slot.is_cut() || slot.is_alone)
-        && slots.iter().any(|slot| !slot.is_cut())
-        && slots.iter().filter(|slot| slot.is_cut()).count() <= MOST_CUTS
+}
+
+/// Whether they are few enough for chords.
+pub(super) fn are_few(slots: &[Slot]) -> bool {
+    slots.iter().filter(|slot| slot.is_cut()).count() <= MOST_CUTS
 }
 
 /// Where rays of a block first come into the solid.
@@ -98,7 +101,7 @@ impl WithSimd for FindFirsts<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { firsts, block, slots, wanted, depth: [low, high] } = self;
         for i in 0..BLOCK / S::F64_LANES {
-            if wanted >> (i * S::F64_LANES) & (u64::MAX >> (64 - S::F64_LANES)) == 0 {
+            if !is_wanted::<S>(wanted, i) {
                 continue;
             }
             let like = load(simd, &block.offset, i);
@@ -112,6 +115,24 @@ impl WithSimd for FindFirsts<'_> {
                     t = Vector::select(later, enter, t);
                     end = Vector::select(later, like.same(number), end);
                     last = last.min(load(simd, &slot.exit, i));
+                }
+                number += 2.0;
+            }
+            // Rays that are inside of all of the first before the near depth are inside of
+            // another leaf there, if they have not come in before.
+            let near = like.same(low);
+            let mut early = block.places_on_rays(simd, i, t).less(near);
+            number = 1.0;
+            for slot in slots {
+                if slot.is_cut() {
+                    let (enter, exit) =
+                        (load(simd, &slot.enter, i), load(simd, &slot.exit, i));
+                    let starts_before = block.places_on_rays(simd, i, enter).less(near);
+                    let ends_before = block.places_on_rays(simd, i, exit).less(near);
+                    let holds = early & starts_before & !ends_before;
+                    t = Vector::select(holds, exit, t);
+                    end = Vector::select(holds, like.same(number), end);
+                    early = early & !holds;
                 }
                 number += 2.0;
             }
@@ -170,7 +191,7 @@ impl WithSimd for FindLengths<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { lengths, block, slots, wanted, depth: [low, high] } = self;
         for i in 0..BLOCK / S::F64_LANES {
-            if wanted >> (i * S::F64_LANES) & (u64::MAX >> (64 - S::F64_LANES)) == 0 {
+            if !is_wanted::<S>(wanted, i) {
                 continue;
             }
             let like = load(simd, &block.offset, i);

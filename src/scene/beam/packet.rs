@@ -4,7 +4,7 @@ use glam::DVec3;
 use pulp::Arch;
 
 use super::block::{Block, Slot, slots_of};
-use super::flat::{Firsts, Lengths, is_simple};
+use super::flat::{Firsts, Lengths, are_few, is_simple};
 use super::known::Known;
 use super::survey::Candidate;
 use super::walk::{Ends, FEW, Logic, Step, Walk};
@@ -166,7 +166,9 @@ impl Packet {
         within: [f64; 2],
     ) -> Option<&Lengths> {
         let slots = &self.slots[..self.used];
-        let is_simple = matches!(self.logic, Some(Logic::All { .. })) && is_simple(slots);
+        let is_simple = matches!(self.logic, Some(Logic::All { .. }))
+            && is_simple(slots)
+            && are_few(slots);
         is_simple.then(|| {
             self.lengths.find(self.arch, block, slots, wanted, within);
             &*self.lengths

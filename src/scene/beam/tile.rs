@@ -133,6 +133,7 @@ impl<'a> TileTracer<'a> {
         if self.has_lines & 1 << block == 0 {
             self.has_lines |= 1 << block;
             let wanted = self.open[block];
+            self.blocks[block].set_common_dir(tile.fan.common_dir());
             for ray in (0..BLOCK).filter(|ray| wanted >> ray & 1 == 1) {
                 self.blocks[block].set_ray(ray, &tile.ray_of(block, ray));
             }
