@@ -216,6 +216,16 @@ impl<S: Simd> Lanes for Vector<S> {
     }
 }
 
+/// A whole number that was kept, or computed, among others.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "counts and places, whole or to be cut, from 0 to 2^53"
+)]
+pub(crate) fn whole(x: f64) -> u64 {
+    x as u64
+}
+
 /// A vector of space, or one for each ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vec3<L> {

@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use crate::lanes::whole;
+
 /// A Fibonacci lattice: `n` points of the unit square, `n` a Fibonacci number and the
 /// generator the one before it.
 ///
@@ -62,12 +64,7 @@ impl Fibonacci {
         let n = self.n as f64;
         let first = ((from - shift.x) * n).floor() - 2.0;
         let count = ((to - from) * n).ceil() + 5.0;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "whole numbers from 0 to n, which is below 2^53"
-        )]
-        let [first, count] = [first.rem_euclid(n), count.min(n)].map(|x| x as u64);
+        let [first, count] = [first.rem_euclid(n), count.min(n)].map(whole);
         let Self { n, generator } = *self;
         let second = first % n * generator % n;
         let wrapped = move |x: u64| if x < n { x } else { x - n };

@@ -151,6 +151,31 @@ fn n34_rays_into_corners_stay_in_the_room() {
 }
 
 /// Rays that come from afar end a long way, in units of rounding, off the surface.
+/// Plates nearer to one another than the rounding of a point where a ray from afar has met the
+/// uppermost: only its identity tells that one from those below.
+#[test]
+fn rays_thrown_back_from_a_stack_of_thin_plates_do_not_meet_those_below() {
+    let plate = |i: i32| {
+        let top = -2e-6 * f64::from(i);
+        Solid::cuboid(dvec3(4.0, 4.0, 1e-6)).translated(DVec3::Z * (top - 0.5e-6))
+    };
+    let scene = scene(&(0..20).map(plate).fold(Solid::empty(), |all, plate| all + plate));
+    let mut tracer = scene.tracer();
+    let mut dice = Dice::new(5);
+    let mut off = 0;
+    for _ in 0..1000 {
+        let to = dvec3(dice.within(-1.0, 1.0), dice.within(-1.0, 1.0), 0.0);
+        let dir = dvec3(dice.within(-0.5, 0.5), dice.within(-0.5, 0.5), -1.0);
+        let ray = Ray::new(to - 1e10 * dir, dir);
+        let hit = tracer.first_hit(&ray).expect("the stack is wide");
+        let point = ray.at(hit.t);
+        off += usize::from(point.z.abs() > 2e-6);
+        let ray = Ray::new(point, reflected(ray.dir, scene.normal_at(&ray, &hit)));
+        assert_eq!(tracer.next_hit(&ray, &hit), None, "{ray:?}");
+    }
+    assert!(off > 100, "only {off} points are among the plates or above them");
+}
+
 #[test]
 fn n34_rays_from_afar_leave_where_they_hit() {
     let mut dice = Dice::new(35);

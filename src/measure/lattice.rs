@@ -14,6 +14,7 @@ use glam::{DVec2, DVec3};
 
 use crate::aabb::Aabb;
 use crate::fan::{Fan, Linear};
+use crate::lanes::whole;
 use crate::progress::Progress;
 use crate::sampling::{Fibonacci, hash, unit};
 use crate::scene::Bunch;
@@ -127,15 +128,6 @@ impl Beam {
         let rows = (bunches / columns).round().max(1.0);
         [columns, rows].map(whole)
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "counts and places that are whole and below 2^53"
-)]
-fn whole(x: f64) -> u64 {
-    x as u64
 }
 
 /// Rays near each other, and which lattices they are of.

@@ -32,6 +32,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::aabb::Aabb;
+use crate::lanes::whole;
 use crate::ray::Sense;
 pub(crate) use chain::Chain;
 use cuboid::Cuboid;
@@ -308,14 +309,9 @@ impl Sink<'_> {
     }
 }
 
-/// The number of a face that was kept among the numbers of a stretch.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "faces of leaves that have stretches are numbered from 0 to 5"
-)]
+/// The number of a face, or of an end, that was kept among the numbers of a stretch.
 pub(crate) fn face_of(number: f64) -> u32 {
-    number as u32
+    u32::try_from(whole(number)).expect("faces and ends are counted in 32 bits")
 }
 
 /// All faces of a leaf that has no more than there are bits.

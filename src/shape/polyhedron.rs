@@ -571,6 +571,33 @@ fn passed(from: Corner, to: Corner, axis: usize) -> Corner {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    /// A coordinate with few digits, or with many and a few units of rounding more.
+    fn coordinate() -> impl Strategy<Value = f64> {
+        let small = (-8..=8_i32).prop_map(|i| 0.125 * f64::from(i));
+        prop_oneof![small, -1.0..1.0_f64]
+    }
+
+    proptest! {
+        /// Points on one line with the origin, but for rounding: there the filter has to hand
+        /// over to exact arithmetic.
+        #[test]
+        fn turns_have_exact_signs(
+            a in [coordinate(), coordinate()],
+            factor in coordinate(),
+            ulps in [-3..=3_i32, -3..=3_i32],
+        ) {
+            let a = DVec2::from_array(a);
+            let off = |x: f64, n: i32| x + f64::from(n) * U * x;
+            let b = factor * a;
+            let b = DVec2::new(off(b.x, ulps[0]), off(b.y, ulps[1]));
+            let exact = exact_turn(a, b);
+            let sign = |x: f64| x.partial_cmp(&0.0);
+            prop_assert_eq!(sign(turn(a, b)), sign(exact), "{} {}", a, b);
+            prop_assert_eq!(sign(turn(b, a)), sign(-exact));
+        }
+    }
 
     /// The figure that the documentation of [`Scene`](crate::Scene) gives.
     #[test]

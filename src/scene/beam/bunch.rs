@@ -9,6 +9,7 @@ use super::packet::Packet;
 use super::sight::Sight;
 use super::survey::{List, Survey};
 use crate::fan::Fan;
+use crate::lanes::whole;
 use crate::ray::{Ray, Span};
 use crate::scene::{Scene, Tracer};
 
@@ -184,13 +185,4 @@ fn slowest(bunch: &Bunch<'_>) -> f64 {
     // Directions differ across, if at all, by what does not make them shorter along.
     let along = dir.right.cross(dir.up).normalize_or_zero();
     if along == DVec3::ZERO { dir.middle.length() } else { dir.middle.dot(along).abs() }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "counts are whole and small"
-)]
-fn whole(count: f64) -> u64 {
-    count as u64
 }
