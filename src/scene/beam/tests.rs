@@ -59,9 +59,13 @@ fn arches() -> [Arch; 2] {
     [Arch::new(), Arch::Scalar]
 }
 
+/// Where in a fan the rays of a tile are.
+fn tile_place(step: [f64; 2], i: usize, j: usize) -> [f64; 2] {
+    [(i as f64 - 16.0) * step[0], (16.0 - j as f64) * step[1]]
+}
+
 fn assert_same_hits(scene: &Scene, fan: &Fan, step: [f64; 2], size: [usize; 2]) {
-    let at =
-        |i: usize, j: usize| [(i as f64 - 16.0) * step[0], (16.0 - j as f64) * step[1]];
+    let at = |i: usize, j: usize| tile_place(step, i, j);
     let tile = Tile { fan, size, at: &at };
     let mut alone = scene.tracer();
     for arch in arches() {
@@ -84,7 +88,7 @@ fn assert_same_hits(scene: &Scene, fan: &Fan, step: [f64; 2], size: [usize; 2]) 
 }
 
 fn assert_same_spans(scene: &Scene, fan: &Fan, step: [f64; 2], size: [usize; 2]) {
-    let at = |i: usize, j: usize| [i as f64 * step[0], j as f64 * step[1]];
+    let at = |i: usize, j: usize| tile_place(step, i, j);
     let places: Vec<[f64; 2]> =
         (0..size[1]).flat_map(|j| (0..size[0]).map(move |i| at(i, j))).collect();
     let corners = [at(0, 0), at(size[0] - 1, size[1] - 1)];
@@ -177,6 +181,47 @@ proptest! {
     ) {
         let fan = aimed(&fan, &model, at, aside);
         assert_same_spans(&compiled(&model), &fan, step, size);
+    }
+}
+
+/// Boxes whose sides are exactly where rays of a fan along an axis are: rays within faces, at
+/// the edges of regions.
+fn walls() -> impl Strategy<Value = (Model, Fan, [f64; 2])> {
+    let ray = || 0..32_usize;
+    let sides = vec((ray(), ray(), ray(), ray(), coordinate(), length(), op()), 1..6);
+    let place = || -3.0..3.0_f64;
+    (sides, place(), place(), 0.01..0.3_f64, 0.01..0.3_f64).prop_map(
+        |(sides, x, y, dx, dy)| {
+            let middle = DVec3::new(x, y, -7.0);
+            let origin = Linear { middle, right: DVec3::X, up: DVec3::Y };
+            let fan = Fan { origin, dir: Linear::constant(DVec3::Z) };
+            let at = |i: usize, j: usize| {
+                let [right, up] = tile_place([dx, dy], i, j);
+                fan.ray(right, up).origin
+            };
+            let solid =
+                sides.into_iter().fold(None, |all, (a, b, c, d, z, height, op)| {
+                    let (p, q) = (at(a.min(b), c.max(d)), at(a.max(b) + 1, c.min(d)));
+                    let max = DVec3::new(q.x, q.y.max(p.y + dy), z + height);
+                    let leaf = Model::Leaf(Leaf::Cuboid { min: p.with_z(z), max });
+                    Some(match all {
+                        Some(all) => Model::boolean(op, [all, leaf]),
+                        None => leaf,
+                    })
+                });
+            (solid.expect("there is a box"), fan, [dx, dy])
+        },
+    )
+}
+
+proptest! {
+    #[test]
+    fn rays_within_faces_at_the_edges_of_regions_hit_the_same(
+        (model, fan, step) in walls(),
+    ) {
+        let scene = compiled(&model);
+        assert_same_hits(&scene, &fan, step, [32, 32]);
+        assert_same_spans(&scene, &fan, step, [16, 9]);
     }
 }
 
