@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
+use super::beam::{Beam, Samples};
 use super::estimate::Estimate;
-use super::lattice::{
-    Beam, REPLICATES, Round, Samples, Sampling, Tally, rounds, student,
-};
+use super::lattice::{Round, Sampling, Tally, rounds};
+use super::spread::{REPLICATES, student};
 use super::volume::{Sum, estimate, growth, is_nothing};
 use crate::progress::Progress;
 use crate::scene::{BunchTracer, Chords, CompileError, CompileOptions, Scene};

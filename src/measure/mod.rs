@@ -1,8 +1,11 @@
 //! Numbers: volume, and how much two solids differ, each with an interval that is true.
 
+mod beam;
+mod column;
 mod compare;
 mod estimate;
 mod lattice;
+mod spread;
 mod volume;
 
 pub use compare::{Comparison, Verdict, Worst, compare, compare_with};

@@ -1,9 +1,9 @@
 //! Volume.
 
+use super::beam::Beam;
 use super::estimate::{Estimate, Method};
-use super::lattice::{
-    Beam, ENOUGH_HITS, REPLICATES, Round, Sampling, Tally, most_hits, rounds, student,
-};
+use super::lattice::{Round, Sampling, Tally, rounds};
+use super::spread::{ENOUGH_HITS, REPLICATES, most_hits, student};
 use crate::progress::Progress;
 use crate::scene::{Chords, Scene};
 
