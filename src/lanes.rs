@@ -219,11 +219,11 @@ impl<S: Simd> Lanes for Vector<S> {
 /// A whole number that was kept, or computed, among others.
 #[expect(
     clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
     reason = "counts and places, whole or to be cut, from 0 to 2^53"
 )]
 pub(crate) fn whole(x: f64) -> u64 {
-    x as u64
+    // Machines have an instruction for signed numbers.
+    (x as i64).cast_unsigned()
 }
 
 /// A vector of space, or one for each ray.

@@ -65,23 +65,22 @@ impl Fibonacci {
         let first = ((from - shift.x) * n).floor() - 2.0;
         let count = ((to - from) * n).ceil() + 5.0;
         let [first, count] = [first.rem_euclid(n), count.min(n)].map(whole);
-        let Self { n, generator } = *self;
-        let second = first % n * generator % n;
-        let wrapped = move |x: u64| if x < n { x } else { x - n };
-        let step = move |&[i, other]: &[u64; 2]| {
-            Some([wrapped(i + 1), wrapped(other + generator)])
-        };
-        let numbers = std::iter::successors(Some([first % n, second]), step);
-        let count = usize::try_from(count).expect("that many points fit the memory");
-        numbers.take(count).map(move |[i, other]| self.moved(i, other, shift))
+        let first = first % self.n;
+        let second = first * self.generator % self.n;
+        // Whole numbers, which need not be made ones of this kind at each point.
+        let mut numbers = DVec2::new(first as f64, second as f64);
+        let step = DVec2::new(1.0, self.generator as f64);
+        (0..count).map(move |_| {
+            let point = numbers / n + shift;
+            numbers = less_if_reached(numbers + step, n);
+            less_if_reached(point, 1.0)
+        })
     }
+}
 
-    /// The point with these numbers, moved by `shift`.
-    fn moved(&self, i: u64, other: u64, shift: DVec2) -> DVec2 {
-        let point = DVec2::new(i as f64, other as f64) / self.n as f64;
-        // The integer part, which is zero or one.
-        (point + shift).map(|x| if x < 1.0 { x } else { x - 1.0 })
-    }
+/// Numbers that are less than twice some limit, less that if they reach it.
+fn less_if_reached(v: DVec2, limit: f64) -> DVec2 {
+    v - DVec2::select(v.cmpge(DVec2::splat(limit)), DVec2::splat(limit), DVec2::ZERO)
 }
 
 /// A number that looks random and depends on the seed and the indices alone: `SplitMix64`

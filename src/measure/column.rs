@@ -10,7 +10,7 @@ use crate::scene::Bunch;
 /// The points of all lattices in one column of a grid, row by row.
 #[derive(Debug, Default)]
 pub(super) struct Column {
-    found: Vec<(u64, u8, [f64; 2])>,
+    found: Vec<(usize, u8, [f64; 2])>,
     /// Where the rows begin, and the last one ends.
     rows: Vec<usize>,
     pub(super) places: Vec<[f64; 2]>,
@@ -26,16 +26,20 @@ impl Column {
         [columns, rows]: [u64; 2],
         number: u64,
     ) {
-        let cell = |x: f64, count: u64| whole(x * count as f64).min(count - 1);
+        let last_row = (rows - 1) as f64;
+        // What rounding takes over the far edge is of the last column.
+        let beyond =
+            if number + 1 < columns { (number + 1) as f64 } else { f64::INFINITY };
         self.found.clear();
         self.rows.clear();
         self.rows.resize(usize_of(rows) + 1, 0);
         let [from, to] = [number, number + 1].map(|i| i as f64 / columns as f64);
         for (replicate, &shift) in (0..).zip(shifts) {
             for p in lattice.between(from, to, shift) {
-                if cell(p.x, columns) == number {
-                    let row = cell(p.y, rows);
-                    self.rows[usize_of(row) + 1] += 1;
+                let column = p.x * columns as f64;
+                if column >= number as f64 && column < beyond {
+                    let row = usize_of(whole((p.y * rows as f64).min(last_row)));
+                    self.rows[row + 1] += 1;
                     self.found.push((row, replicate, [p.x - 0.5, p.y - 0.5]));
                 }
             }
@@ -48,7 +52,7 @@ impl Column {
         self.places.resize(self.found.len(), [0.0; 2]);
         self.replicates.resize(self.found.len(), 0);
         for &(row, replicate, place) in &self.found {
-            let next = &mut next[usize_of(row)];
+            let next = &mut next[row];
             self.places[*next] = place;
             self.replicates[*next] = replicate;
             *next += 1;
