@@ -241,7 +241,8 @@ fn slope(points: &[[f64; 2]]) -> f64 {
     product / points.iter().map(|p| (p[0] - x).powi(2)).sum::<f64>()
 }
 
-/// Of three hundred intervals of 95 %, about 285 hold the truth.
+/// Of three hundred intervals of 95 %, about 285 hold the truth: of those after a number of
+/// rays, and of those that are as narrow as was asked for.
 #[test]
 fn n39_intervals_hold_the_truth_as_often_as_they_say() {
     let tilted = Solid::cuboid(dvec3(1.0, 2.0, 0.7)).mapped(tilt());
@@ -254,12 +255,15 @@ fn n39_intervals_hold_the_truth_as_often_as_they_say() {
         ("rods", rods, 16.0 / 3.0),
     ] {
         let scene = scene(&solid);
-        let holds = |seed: &u64| {
-            let estimate = measure::volume(&scene, &sampling(1e-9, 4000, *seed));
-            estimate.interval[0] <= exact && exact <= estimate.interval[1]
-        };
-        let held = (0..300).filter(holds).count();
-        assert!((270..=297).contains(&held), "{name}: {held} of 300");
+        for (rel_tol, most) in [(1e-9, 4000), (1e-3, u64::MAX)] {
+            let holds = |seed: &u64| {
+                let estimate = measure::volume(&scene, &sampling(rel_tol, most, *seed));
+                assert!(estimate.target_met || most < u64::MAX, "{estimate:?}");
+                estimate.interval[0] <= exact && exact <= estimate.interval[1]
+            };
+            let held = (0..300).filter(holds).count();
+            assert!((270..=297).contains(&held), "{name}, {rel_tol}: {held} of 300");
+        }
     }
 }
 

@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use super::beam::{Beam, Samples};
 use super::estimate::Estimate;
-use super::lattice::{Round, Sampling, Tally, rounds};
-use super::spread::{REPLICATES, student};
-use super::volume::{Sum, estimate, growth, is_nothing};
+use super::lattice::{Round, Sampling, Tally, Wanted, rounds};
+use super::spread::student;
+use super::volume::{Sum, estimate, is_nothing, wanted};
 use crate::progress::Progress;
 use crate::scene::{BunchTracer, Chords, CompileError, CompileOptions, Scene};
 use crate::solid::Solid;
@@ -129,12 +129,16 @@ pub fn compare_with(
             sample(tracers, only_one, samples, tallies);
         },
         |round, rays| {
-            let now = comparison(round, rays);
+            let (now, lattices) = (comparison(round, rays), round.replicates.len());
             let wanted = |e: &Estimate| {
-                if e.value == 0.0 { 1.0 } else { growth(e, sampling.rel_tol) }
+                let rel_tol = sampling.rel_tol;
+                let is_known = e.value == 0.0;
+                if is_known { Wanted::Nothing } else { wanted(e, rel_tol, lattices) }
             };
-            let undecided = if now.verdict == Verdict::Undecided { MORE } else { 1.0 };
-            undecided.max(wanted(&now.a)).max(wanted(&now.b))
+            let undecided = now.verdict == Verdict::Undecided;
+            let undecided =
+                if undecided { Wanted::Larger(MORE) } else { Wanted::Nothing };
+            undecided.and(wanted(&now.a)).and(wanted(&now.b))
         },
     );
     Ok(comparison(&round, rays))
@@ -163,7 +167,7 @@ fn sample(
     tracers: &mut [BunchTracer<'_>; 4],
     only_one: &mut Vec<Sum>,
     samples: &Samples<'_>,
-    tallies: &mut [Tallies; REPLICATES],
+    tallies: &mut [Tallies],
 ) {
     let tally_of = |i: usize| usize::from(samples.replicates[i]);
     only_one.clear();

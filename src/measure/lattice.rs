@@ -6,7 +6,14 @@
 //! random, are sixteen independent unbiased estimates, and Student's t makes an interval of
 //! them (P. L'Ecuyer, C. Lemieux, "Variance Reduction via Lattice Rules", Management
 //! Science 46(9), 2000).
+//!
+//! Where that is not quite narrow enough, the spread of the sixteen says how many lattices
+//! more make it so. To go on until the interval looks narrow would favour spreads that are
+//! too small by chance; so the spread remains that of the sixteen, as in C. Stein, "A
+//! Two-Sample Test for a Linear Hypothesis Whose Power is Independent of the Variance",
+//! Annals of Mathematical Statistics 16(3), 1945.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -15,6 +22,7 @@ use glam::DVec2;
 use super::beam::{Beam, Samples};
 use super::column::{Column, usize_of};
 use super::spread::REPLICATES;
+use crate::lanes::whole;
 use crate::progress::Progress;
 use crate::sampling::{Fibonacci, hash, unit};
 
@@ -56,66 +64,130 @@ pub(super) struct Round<T> {
     pub(super) size: u64,
 }
 
-/// Rounds of ever larger lattices until one is enough or a limit is reached. Returns the
-/// last round that was finished and the number of rays of all that were.
+/// What is wanted after a round.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Wanted {
+    /// No more.
+    Nothing,
+    /// As many lattices of the same size, in all.
+    Lattices(usize),
+    /// Lattices so many times as large, in place of these.
+    Larger(f64),
+}
+
+impl Wanted {
+    /// What two want together.
+    pub(super) fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Larger(a), Self::Larger(b)) => Self::Larger(a.max(b)),
+            (Self::Lattices(a), Self::Lattices(b)) => Self::Lattices(a.max(b)),
+            (Self::Nothing, wanted)
+            | (wanted @ Self::Larger(_), _)
+            | (Self::Lattices(_), wanted @ Self::Larger(_))
+            | (wanted, Self::Nothing) => wanted,
+        }
+    }
+}
+
+/// Rounds of ever larger lattices, or of more of them, until they are enough or a limit is
+/// reached. Returns the last round that was finished and the number of rays of all that were.
 ///
-/// `growth` says of a round how many times as many rays are wanted, 1 or less if it is enough.
 /// `scratch` makes what a thread needs, `sample` adds rays to the tallies of their lattices.
 pub(super) fn rounds<S, T: Tally>(
     beam: &Beam,
     sampling: &Sampling,
     progress: Progress<'_>,
     scratch: impl Fn() -> S + Sync + Send,
-    sample: impl Fn(&mut S, &Samples<'_>, &mut [T; REPLICATES]) + Sync + Send,
-    mut growth: impl FnMut(&Round<T>, u64) -> f64,
+    sample: impl Fn(&mut S, &Samples<'_>, &mut [T]) + Sync + Send,
+    mut wanted: impl FnMut(&Round<T>, u64) -> Wanted,
 ) -> (Round<T>, u64) {
     let start = Instant::now();
     let deadline = sampling.time_limit.and_then(|limit| start.checked_add(limit));
-    let (mut lattice, mut rays) = (Fibonacci::at_least(FIRST), 0);
-    let mut last = Round { replicates: Vec::new(), size: 0 };
-    last.replicates.resize_with(REPLICATES, T::default);
+    let mut round = Round { replicates: Vec::new(), size: 0 };
+    round.replicates.resize_with(REPLICATES, T::default);
+    let mut next = Part::first(Fibonacci::at_least(FIRST));
+    let mut rays = 0;
     loop {
         let before = start.elapsed();
         let seed = sampling.seed;
-        let found = round(beam, seed, lattice, deadline, progress, &scratch, &sample);
-        let Some(round) = found else { return (last, rays) };
-        rays += lattice.len() * REPLICATES as u64;
-        let wanted = growth(&round, rays);
-        if wanted <= 1.0 {
-            return (round, rays);
+        let found = part(beam, seed, &next, deadline, progress, &scratch, &sample);
+        let Some(found) = found else { return (round, rays) };
+        rays += next.rays();
+        if next.is_first() {
+            round = Round { replicates: found, size: next.lattice.len() };
+        } else {
+            round.replicates.extend(found);
         }
-        last = round;
         let took = (start.elapsed() - before).as_secs_f64();
         let left = sampling.time_limit.map_or(f64::INFINITY, |limit| {
             limit.saturating_sub(start.elapsed()).as_secs_f64()
         });
-        let most = (left / took).min(
-            (sampling.max_rays.saturating_sub(rays)) as f64
-                / (lattice.len() * REPLICATES as u64) as f64,
-        );
-        let Some(next) = lattice.grown(wanted, most) else {
-            return (last, rays);
+        let most = (left / took * next.rays() as f64)
+            .min(sampling.max_rays.saturating_sub(rays) as f64);
+        let following = match wanted(&round, rays) {
+            Wanted::Nothing => None,
+            Wanted::Lattices(count) => next.more(count, most),
+            Wanted::Larger(factor) => next.larger(factor, most),
         };
-        lattice = next;
+        let Some(part) = following else { return (round, rays) };
+        next = part;
     }
 }
 
-/// One round, unless the deadline comes first.
-fn round<S, T: Tally>(
+/// Some of the lattices of a round.
+#[derive(Clone, Debug)]
+struct Part {
+    lattice: Fibonacci,
+    numbers: Range<usize>,
+}
+
+impl Part {
+    /// The lattices that a round begins with.
+    fn first(lattice: Fibonacci) -> Self {
+        Self { lattice, numbers: 0..REPLICATES }
+    }
+
+    fn is_first(&self) -> bool {
+        self.numbers.start == 0
+    }
+
+    fn rays(&self) -> u64 {
+        self.lattice.len() * self.numbers.len() as u64
+    }
+
+    /// More lattices after these, so that there are `count` of them, with at most `most` rays.
+    fn more(&self, count: usize, most: f64) -> Option<Self> {
+        let from = self.numbers.end;
+        let room = usize_of(whole(most / self.lattice.len() as f64));
+        let to = count.min(from.saturating_add(room));
+        (to > from).then_some(Self { lattice: self.lattice, numbers: from..to })
+    }
+
+    /// Lattices that are larger, if possible by a factor, with at most `most` rays.
+    fn larger(&self, factor: f64, most: f64) -> Option<Self> {
+        let most = most / (self.lattice.len() * REPLICATES as u64) as f64;
+        self.lattice.grown(factor, most).map(Self::first)
+    }
+}
+
+/// Samples a part of a round, unless the deadline comes first.
+fn part<S, T: Tally>(
     beam: &Beam,
     seed: u64,
-    lattice: Fibonacci,
+    part: &Part,
     deadline: Option<Instant>,
     progress: Progress<'_>,
     scratch: &(impl Fn() -> S + Sync + Send),
-    sample: &(impl Fn(&mut S, &Samples<'_>, &mut [T; REPLICATES]) + Sync + Send),
-) -> Option<Round<T>> {
-    let size = lattice.len();
-    let shifts: [DVec2; REPLICATES] = std::array::from_fn(|replicate| {
-        let part = |axis| unit(hash(seed, &[size, replicate as u64, axis]));
+    sample: &(impl Fn(&mut S, &Samples<'_>, &mut [T]) + Sync + Send),
+) -> Option<Vec<T>> {
+    let Part { lattice, numbers } = part;
+    let shift = |number: usize| {
+        let part = |axis| unit(hash(seed, &[lattice.len(), number as u64, axis]));
         DVec2::new(part(0), part(1))
-    });
-    let grid @ [columns, _] = beam.grid(size * REPLICATES as u64);
+    };
+    let shifts: Vec<DVec2> = numbers.clone().map(shift).collect();
+    let tallies = || -> Vec<T> { numbers.clone().map(|_| T::default()).collect() };
+    let grid @ [columns, _] = beam.grid(part.rays());
     let late = AtomicBool::new(false);
     let is_late = || {
         if deadline.is_some_and(|deadline| Instant::now() > deadline) {
@@ -125,11 +197,11 @@ fn round<S, T: Tally>(
     };
     let scratch = || (scratch(), Column::default());
     let partial = |(scratch, column): &mut (S, Column), number: u64| {
-        let mut tallies = std::array::from_fn(|_| T::default());
+        let mut tallies = tallies();
         if is_late() {
             return tallies;
         }
-        column.fill(lattice, &shifts, grid, number);
+        column.fill(*lattice, &shifts, grid, number);
         for bunch in column.bunches(beam, grid, number) {
             if is_late() {
                 break;
@@ -143,11 +215,11 @@ fn round<S, T: Tally>(
     if late.load(Ordering::Relaxed) {
         return None;
     }
-    let mut replicates: Vec<T> = (0..REPLICATES).map(|_| T::default()).collect();
+    let mut replicates = tallies();
     for tallies in partials {
         replicates.iter_mut().zip(tallies).for_each(|(total, part)| total.add(part));
     }
-    Some(Round { replicates, size })
+    Some(replicates)
 }
 
 /// The results of tasks `0..count`, in order, from as many threads as there are.

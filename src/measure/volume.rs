@@ -1,9 +1,11 @@
 //! Volume.
 
 use super::beam::Beam;
+use super::column::usize_of;
 use super::estimate::{Estimate, Method};
-use super::lattice::{Round, Sampling, Tally, rounds};
-use super::spread::{ENOUGH_HITS, REPLICATES, most_hits, student};
+use super::lattice::{Round, Sampling, Tally, Wanted, rounds};
+use super::spread::{ENOUGH_HITS, most_hits, student};
+use crate::lanes::whole;
 use crate::progress::Progress;
 use crate::scene::{Chords, Scene};
 
@@ -65,7 +67,7 @@ pub fn volume_with(
         sampling,
         progress,
         || scene.bunch_tracer(),
-        |tracer, samples, sums: &mut [Sum; REPLICATES]| {
+        |tracer, samples, sums: &mut [Sum]| {
             tracer.chords(&samples.bunch, |i, chords| {
                 sums[usize::from(samples.replicates[i])].add(chords.into());
             });
@@ -74,30 +76,37 @@ pub fn volume_with(
             let hopeless = rays >= sampling.max_rays / PATIENCE
                 && round.replicates.iter().all(|sum| sum.hits == 0);
             let now = estimate(&beam, round, rays, sampling.rel_tol, |sum| *sum);
-            if hopeless { 0.0 } else { growth(&now, sampling.rel_tol) }
+            if hopeless {
+                Wanted::Nothing
+            } else {
+                wanted(&now, sampling.rel_tol, round.replicates.len())
+            }
         },
     );
     estimate(&beam, &round, rays, sampling.rel_tol, |sum| *sum)
 }
 
-/// How many times as many rays an estimate takes to meet its target, 1 or less if it does. The
-/// error falls like the number of rays to some power between 1 and 1½; for the larger one too
-/// few rays cost another round, for the smaller one too many would be wasted.
-pub(super) fn growth(estimate: &Estimate, rel_tol: f64) -> f64 {
-    /// Bounds for what the spread of a small round can promise.
-    const LEAST: f64 = 1.5;
+/// What an estimate from some lattices takes to meet its target. The error falls like the
+/// square root of their number, and like their size to some power between 1 and 1½.
+pub(super) fn wanted(estimate: &Estimate, rel_tol: f64, lattices: usize) -> Wanted {
+    /// With more than these larger ones are cheaper.
     const MOST: f64 = 64.0;
+    /// Bounds for what the spread of a small round can promise.
+    const GROWTH: [f64; 2] = [1.5, 64.0];
     /// Where it promises nothing.
     const UNKNOWN: f64 = 4.0;
     const POWER: f64 = 1.5;
-    let [low, high] = estimate.interval;
-    let ratio = 0.5 * (high - low) / (rel_tol * estimate.value);
+    let ratio = estimate.half_width() / (rel_tol * estimate.value);
+    let count = lattices as f64 * ratio * ratio;
     if estimate.target_met {
-        1.0
-    } else if estimate.resolved && ratio.is_finite() {
-        ratio.powf(1.0 / POWER).clamp(LEAST, MOST)
+        Wanted::Nothing
+    } else if !estimate.resolved || !ratio.is_finite() {
+        Wanted::Larger(UNKNOWN)
+    } else if count <= MOST {
+        Wanted::Lattices(usize_of(whole(count.ceil())).max(lattices + 1))
     } else {
-        UNKNOWN
+        let [least, most] = GROWTH;
+        Wanted::Larger(ratio.powf(1.0 / POWER).clamp(least, most))
     }
 }
 
