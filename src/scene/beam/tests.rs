@@ -225,6 +225,44 @@ proptest! {
     }
 }
 
+/// Thin boxes, flush here and there, and rays along an axis to them from so far away that
+/// several of their sides can be at one place of a ray.
+fn plates() -> impl Strategy<Value = (Model, Fan)> {
+    let side = || 0..5_i32;
+    let lean = || -1.0..1.0_f64;
+    let plates = vec((side(), 1..4_i32, lean(), op()), 2..6);
+    let far = prop_oneof![Just(1.0), Just(1e4), Just(1e8)];
+    (plates, far, lean(), lean()).prop_map(|(plates, far, x, y)| {
+        let middle = DVec3::new(x, y, -far);
+        let fan = Fan {
+            origin: Linear { middle, right: DVec3::X, up: DVec3::Y },
+            dir: Linear::constant(DVec3::Z),
+        };
+        // Half of what rounding leaves of the distance.
+        let unit = far * (f64::EPSILON / 4.0);
+        let mut model = None;
+        for (from, thick, edge, op) in plates {
+            let [from, to] = [from, from + thick].map(|z| f64::from(z) * unit);
+            let (min, max) = (DVec3::new(edge, -4.0, from), DVec3::new(4.0, 4.0, to));
+            let plate = Model::Leaf(Leaf::Cuboid { min, max });
+            model = Some(match model {
+                Some(model) => Model::boolean(op, [model, plate]),
+                None => plate,
+            });
+        }
+        (model.expect("there is a plate"), fan)
+    })
+}
+
+proptest! {
+    #[test]
+    fn rays_from_afar_hit_the_same((model, fan) in plates()) {
+        let (scene, step) = (compiled(&model), [0.1, 0.1]);
+        assert_same_hits(&scene, &fan, step, [32, 9]);
+        assert_same_spans(&scene, &fan, step, [16, 9]);
+    }
+}
+
 /// What tiles do for a picture of 256 × 256 rays of a scene that speed is measured on, for each
 /// thousand rays.
 fn work_for_a_picture(name: &str) -> Work {
