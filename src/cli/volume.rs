@@ -17,9 +17,10 @@ use super::{Answer, Global};
 /// Measure the volume, with a 95 % interval
 ///
 /// Sixteen randomly shifted Fibonacci lattices of parallel rays are made larger, and more of
-/// them at last, until the interval is as narrow as asked. A solid that too few rays meet is "not resolved" and gets
-/// an upper bound; if no ray at all meets it, a sixteenth of --max-rays is enough to say so. The
-/// exit code is 0 whether the tolerance was met or not: --json says in `target_met`.
+/// them at last, until the interval is as narrow as asked. A solid that too few rays meet is
+/// "not resolved" and gets an upper bound; if no ray at all meets it, a sixteenth of
+/// --max-rays is enough to say so. The exit code is 0 whether the tolerance was met or not:
+/// --json says in `target_met`.
 #[derive(Args, Debug)]
 pub(super) struct Volume {
     /// The model

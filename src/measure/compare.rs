@@ -161,8 +161,8 @@ fn both_empty() -> Comparison {
     }
 }
 
-/// Adds rays to the tallies of their lattices. What was in `only_one` does not matter: it takes
-/// what each ray finds of both differences.
+/// Adds rays to the tallies of their lattices. What was in `only_one` does not matter: it
+/// takes what each ray finds of both differences.
 fn sample(
     tracers: &mut [BunchTracer<'_>; 4],
     only_one: &mut Vec<Sum>,

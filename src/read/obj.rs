@@ -1,12 +1,12 @@
 //! Wavefront `.obj`, through the crate tobj.
 //!
-//! It gets the lines that say where points and faces are, without comments and with
-//! continued lines joined. Points come without the colours that many programs write after
-//! their coordinates: tobj wants a colour at every point or at none, and none of four
-//! parts. A fourth word alone is a weight. Groups and materials do not change the solid and would only
-//! split its points among several meshes; texture coordinates, normals, lines and
-//! free-form curves are of no use here. Faces keep their corners: tobj would make fans of
-//! them, which is wrong for concave ones.
+//! It gets the lines that say where points and faces are, without comments and with continued
+//! lines joined. Points come without the colours that many programs write after their
+//! coordinates: tobj wants a colour at every point or at none, and none of four parts. A
+//! fourth word alone is a weight. Groups and materials do not change the solid and would only
+//! split its points among several meshes; texture coordinates, normals, lines and free-form
+//! curves are of no use here. Faces keep their corners: tobj would make fans of them, which
+//! is wrong for concave ones.
 
 use std::io::{BufRead, Read, Result};
 

@@ -11,10 +11,10 @@ impl Tracer<'_> {
     /// errors of their ends ([`Scene::error_at`](crate::Scene::error_at)). Those whose ends
     /// are one number `t`, which are left out of the list, count too.
     ///
-    /// Only pieces shorter than about √ε are looked at, where ε is the largest displacement of any
-    /// surface by rounding and lengths are fractions of the solid's size: no graze of a curved face is
-    /// longer. A ray that runs along a plane within rounding, at an angle smaller than √ε,
-    /// could have longer ones; they do not count.
+    /// Only pieces shorter than about √ε are looked at, where ε is the largest displacement
+    /// of any surface by rounding and lengths are fractions of the solid's size: no graze of
+    /// a curved face is longer. A ray that runs along a plane within rounding, at an angle
+    /// smaller than √ε, could have longer ones; they do not count.
     pub fn uncertain(&self, ray: &Ray) -> u64 {
         let mut count = self.collapsed;
         let origin = ray.origin.abs().max_element();

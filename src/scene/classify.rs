@@ -46,10 +46,10 @@ impl Tracer<'_> {
     /// Whether a point is inside, outside, or on the boundary within the bounds of rounding.
     ///
     /// The answer is that of [`Tracer::contains`], unless the point is nearer to surfaces
-    /// than [`Scene::error_at`](crate::Scene::error_at) accounts for and the solid has both sides there. For each way in
-    /// which the point may lie to those surfaces the solid is asked again. So a point on a
-    /// face that two leaves share is inside, and one on a face that is buried in another
-    /// leaf too.
+    /// than [`Scene::error_at`](crate::Scene::error_at) accounts for and the solid has both
+    /// sides there. For each way in which the point may lie to those surfaces the solid is
+    /// asked again. So a point on a face that two leaves share is inside, and one on a face
+    /// that is buried in another leaf too.
     pub fn classify(&mut self, point: DVec3) -> Membership {
         if let Some(inside) = self.certain_of_all(point) {
             return if inside { Membership::In } else { Membership::Out };
@@ -71,7 +71,8 @@ impl Tracer<'_> {
         }
     }
 
-    /// The leaves whose surfaces the origin of a line may be on, and how many surfaces that are.
+    /// The leaves whose surfaces the origin of a line may be on, and how many surfaces that
+    /// are.
     fn near(&self, point: DVec3, line: &Line) -> (Vec<Near>, usize) {
         let scene = self.scene;
         let bounds = scene.hierarchy.bounds();

@@ -488,10 +488,10 @@ impl Compiler {
         Ok(NearMisses { pairs, weld })
     }
 
-    /// Keeps for the search only what can matter: within the solid's reach, a leaf is as
-    /// good as its part inside it, and outside nothing is inside anyway, whatever the
-    /// complements are. (For the narrower bounds that would not be true: what cuts them must be
-    /// found by lines that pass beside them.)
+    /// Keeps for the search only what can matter: within the solid's reach, a leaf is as good
+    /// as its part inside it, and outside nothing is inside anyway, whatever the complements
+    /// are. (For the narrower bounds that would not be true: what cuts them must be found by
+    /// lines that pass beside them.)
     fn finish(mut self, weld: f64) -> Result<Scene, CompileError> {
         let welds = self.join(weld)?;
         let reach = self.program.bounds(&self.literals, &self.boxes, &[]);

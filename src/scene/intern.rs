@@ -73,7 +73,8 @@ impl Surfaces {
         }
     }
 
-    /// At most how far each leaf's surfaces are moved when they take over their leaders' numbers.
+    /// At most how far each leaf's surfaces are moved when they take over their leaders'
+    /// numbers.
     fn moved(&self, extents: &[Extent]) -> Vec<f64> {
         let mut moved = vec![0.0; extents.len()];
         self.planes.add_moved(&mut moved, extents);

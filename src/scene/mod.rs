@@ -182,12 +182,12 @@ impl Scene {
     }
 
     /// At most how far, in multiples of the ray's direction, the `t` of a crossing of this
-    /// ray is from that of the solid as it was said: sizes and maps taken for exact numbers, the
-    /// maps multiplied out without rounding.
+    /// ray is from that of the solid as it was said: sizes and maps taken for exact numbers,
+    /// the maps multiplied out without rounding.
     ///
     /// Where the ray comes to an edge of a leaf, the bound is that of the worst face there;
-    /// where it grazes a curved face, it is of the order of the root of the rounding. It is infinite
-    /// where a ray within rounding of a plane runs along it.
+    /// where it grazes a curved face, it is of the order of the root of the rounding. It is
+    /// infinite where a ray within rounding of a plane runs along it.
     ///
     /// The bound is of the leaf's own crossing. A ray that runs within rounding of a face
     /// without crossing it, or two faces of different leaves that are as near to each other,
@@ -206,8 +206,9 @@ impl Scene {
     /// back along the ray by twice the bound on the crossing's error, so that it is on the
     /// side from which the ray came.
     ///
-    /// Rays that are traced here need no such thing: see [`Tracer::next_hit`]. Where the bound
-    /// is not small, because the ray runs along a face, the step is a millionth of the size of the solid.
+    /// Rays that are traced here need no such thing: see [`Tracer::next_hit`]. Where the
+    /// bound is not small, because the ray runs along a face, the step is a millionth of the
+    /// size of the solid.
     pub fn point_before(&self, ray: &Ray, crossing: &Crossing) -> DVec3 {
         let most = 1e-6 * self.bounds.size().length() / ray.speed();
         ray.at(crossing.t - (2.0 * self.error_at(ray, crossing)).min(most))

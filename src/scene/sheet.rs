@@ -12,10 +12,11 @@ use crate::shape::{Plane, Polyhedron, Profile, Wall};
 /// plane's equation by some 16 u more; this leaves room for a dozen nested maps.
 const ROUNDING: f64 = 64.0 * 0.5 * f64::EPSILON;
 
-/// The same in units of the bound that goes with a leaf, where that says less: under a map that
-/// stretches one way the condition number says nothing of the other. How far two surfaces are
-/// apart is estimated from their distance and their angle, each of which may be as large as the bound
-/// allows, and the angle counts for the whole leaf though a face may be a small part of it.
+/// The same in units of the bound that goes with a leaf, where that says less: under a map
+/// that stretches one way the condition number says nothing of the other. How far two
+/// surfaces are apart is estimated from their distance and their angle, each of which may be
+/// as large as the bound allows, and the angle counts for the whole leaf though a face may be
+/// a small part of it.
 const BOUNDS: f64 = 8.0;
 
 /// A leaf that rounding may have moved by more than this part of its size shares only what
