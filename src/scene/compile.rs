@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use thiserror::Error;
 
@@ -529,6 +529,7 @@ impl Compiler {
             part_list: self.part_list,
             clipped,
             hierarchy,
+            cells: OnceLock::new(),
             welds,
         })
     }

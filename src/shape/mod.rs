@@ -14,6 +14,7 @@ mod cuboid;
 mod doubt;
 mod half_space;
 mod line;
+mod over;
 mod pack;
 mod place;
 mod plane;

@@ -127,6 +127,24 @@ impl Polyhedron {
     }
 }
 
+impl Polyhedron {
+    /// How many triangles there are.
+    pub(crate) fn face_count(&self) -> usize {
+        self.mesh.mesh.faces().len()
+    }
+
+    /// Calls `visit` with the corners of each triangle in the world, if the way there can be
+    /// found.
+    pub(crate) fn for_each_face(&self, mut visit: impl FnMut([DVec3; 3])) -> bool {
+        let Some(linear) = super::inverse(&self.to_local.linear) else { return false };
+        for face in 0..self.face_count() {
+            let corners = self.mesh.mesh.corners(face);
+            visit(corners.map(|p| self.to_local.origin + linear * p));
+        }
+        true
+    }
+}
+
 /// For rays that are looked at together.
 impl Polyhedron {
     /// The box around the mesh in its own frame.

@@ -70,13 +70,6 @@ impl Region {
         Self { center, along, sides, breadth, rounding, slabs }
     }
 
-    /// A box with no coordinate larger than `reach`.
-    pub(crate) fn of_box(b: &Aabb, reach: f64) -> Self {
-        let half = 0.5 * b.size();
-        let sides = [DVec3::new(0.0, half.y, 0.0), DVec3::new(0.0, 0.0, half.z)];
-        Self::new(b.center(), DVec3::new(half.x, 0.0, 0.0), sides, reach)
-    }
-
     /// Half its longest edge.
     pub(crate) fn along(&self) -> DVec3 {
         self.along

@@ -7,15 +7,18 @@
 //! meet the solid's bounds if they go through a point in them, so there the line
 //! is one that counts.
 //!
-//! Many points are sorted into cells first, and regions of cells are divided as tiles of rays
-//! are (`beam`): of each leaf it is known to be all around, or far away, for a whole region,
-//! until few leaves are left. The equations of those are computed for the points of the
-//! region side by side.
+//! Where many points are asked about, the box of the scene is divided into cells, once
+//! (`cells`). For each it is known what is to be computed there: nothing where all is
+//! inside or outside, else the equations of the few leaves that matter (`plan`). Points
+//! are sorted by that, and those that have it in common are computed side by side.
 
 mod alone;
+mod block;
+mod cells;
 mod chunk;
 mod grid;
 mod plan;
+mod raster;
 
 use glam::DVec3;
 
@@ -24,15 +27,16 @@ use crate::aabb::Aabb;
 use crate::ray::Ray;
 use crate::shape::U;
 pub(super) use alone::Around;
+pub(super) use cells::Cells;
 use chunk::Chunks;
 
 #[cfg(doc)]
 use super::trace::PROBE;
 
-/// At most this many points are sorted at once: 40 bytes each, one chunk a thread.
+/// At most this many points are sorted at once: 12 bytes each, one chunk a thread.
 const MOST: usize = 1 << 20;
 
-/// Fewer are not worth a chunk of their own while a scene has few leaves.
+/// Fewer are not worth a chunk of their own.
 const LEAST: usize = 1 << 12;
 
 /// Where in a scene points can be told from surfaces.
@@ -88,8 +92,11 @@ impl Scene {
     ///
     /// Points may be anywhere and in any order; one that is not finite is outside. With the
     /// `parallel` feature all threads take part; answers do not depend on how many there
-    /// are, nor on what other points are asked about. It takes some 40 bytes for each of
+    /// are, nor on what other points are asked about. It takes some 12 bytes for each of
     /// at most 2²⁰ points at a time, on each thread.
+    ///
+    /// The first time so many points are asked about that it is worth it, several for each
+    /// leaf, the scene learns which leaves matter where, and keeps that.
     ///
     /// ```
     /// use glam::dvec3;
@@ -102,12 +109,19 @@ impl Scene {
     /// ```
     pub fn contains_all(&self, points: &[DVec3]) -> Vec<bool> {
         let mut inside = vec![false; points.len()];
-        let len = points
-            .len()
-            .div_ceil(2 * threads())
-            .clamp(LEAST.max(self.leaf_count()), MOST);
-        for_each(points, &mut inside, len.min(MOST), || Chunks::new(self));
+        let cells = self.cells_for(points.len());
+        let len = points.len().div_ceil(2 * threads()).clamp(LEAST, MOST);
+        for_each(points, &mut inside, len, || Chunks::new(self, cells));
         inside
+    }
+
+    /// The cells of the scene if they are there, or so many points are worth making them.
+    fn cells_for(&self, points: usize) -> Option<&Cells> {
+        if cells::is_small(self) || points >= cells::price(self) {
+            self.cells.get_or_init(|| Cells::new(self)).as_ref()
+        } else {
+            self.cells.get()?.as_ref()
+        }
     }
 }
 
