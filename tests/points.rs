@@ -33,9 +33,15 @@ fn check(scene: &Scene, points: &[DVec3]) {
     let mut tracer = scene.tracer();
     let found = scene.contains_all(points);
     assert_eq!(found.len(), points.len());
+    // So many that it is worth to learn which leaves matter where.
+    let crowd: Vec<DVec3> = points.iter().copied().cycle().take(20_000).collect();
+    let in_cells = scene.contains_all(&crowd);
     for (i, p) in points.iter().enumerate() {
         assert_eq!(tracer.contains(*p), lines[i], "one: {p:?}");
-        assert_eq!(found[i], lines[i], "many: {p:?}");
+        assert_eq!(found[i], lines[i], "some: {p:?}");
+    }
+    for (i, p) in crowd.iter().enumerate() {
+        assert_eq!(in_cells[i], lines[i % points.len()], "many: {p:?}");
     }
 }
 
@@ -248,4 +254,55 @@ fn crowded_points() {
     let line: Vec<DVec3> =
         (0..20_000).map(|_| dvec3(dice.within(-1.0, 31.0), 0.1, 0.0)).collect();
     check(&scene, &line);
+}
+
+/// Cells that no triangle touches are not asked about by lines one by one.
+#[test]
+fn meshes() {
+    let mut dice = Dice::new(10);
+    let ball = Solid::mesh(meshes::icosphere(3));
+    let turned = |scale: DVec3, dice: &mut Dice| {
+        let turn = DAffine3::from_mat3_translation(dice.rotation(), dice.point(0.5));
+        ball.clone().scaled(scale).mapped(turn)
+    };
+    for _ in 0..6 {
+        let shell = ball.clone() - ball.clone().scaled(DVec3::splat(0.8));
+        let thin = turned(dvec3(1.0, 0.01, 0.7), &mut dice);
+        let far = turned(DVec3::splat(1e-3), &mut dice).translated(1e3 * DVec3::X);
+        let needle = turned(dvec3(1e-7, 1e-7, 1.0), &mut dice);
+        let flipped = turned(dvec3(-1.0, 0.5, 0.5), &mut dice);
+        for solid in [shell, thin + ball.clone(), ball.clone() + far, needle, flipped] {
+            let scene = scene(&solid);
+            let mut points = around(&scene, 8000, &mut dice);
+            let corners = meshes::icosphere(3);
+            points.extend(
+                corners.points().iter().copied().step_by(20).flat_map(neighbours),
+            );
+            check(&scene, &points);
+        }
+    }
+}
+
+/// A tree with many levels, where leaves overlap.
+#[test]
+fn nested_operators() {
+    let mut dice = Dice::new(11);
+    let leaves: Vec<Solid> = (0..120)
+        .map(|i| {
+            let turn = DAffine3::from_mat3_translation(dice.rotation(), dice.point(1.0));
+            let kind =
+                if i % 2 == 0 { Solid::ball(0.5) } else { Solid::cylinder(0.4, 0.9) };
+            kind.scaled(dvec3(1.0, 0.6, 1.3)).mapped(turn)
+        })
+        .collect();
+    let solid =
+        leaves.into_iter().enumerate().fold(Solid::ball(1.0), |solid, (i, leaf)| match i
+            % 5
+        {
+            0 | 1 => solid + leaf,
+            2 | 3 => solid - leaf,
+            _ => solid & (leaf + Solid::ball(0.9)),
+        });
+    let scene = scene(&solid);
+    check(&scene, &around(&scene, 20_000, &mut dice));
 }
