@@ -23,6 +23,7 @@ mod polyhedron;
 mod primitive;
 mod quadric;
 mod region;
+mod sheared;
 mod stretch;
 mod wall;
 #[cfg(test)]
@@ -42,13 +43,14 @@ use half_space::HalfSpace;
 pub(crate) use line::{Line, Lines, Rays, inverse_power_of_two};
 pub(crate) use pack::{Kept, Linear};
 use place::Frame;
-pub(crate) use place::inverse;
+pub(crate) use place::{ToLocal, inverse};
 pub(crate) use plane::Plane;
 pub(crate) use point::{Beside, Equation};
 pub(crate) use polyhedron::{IndexedMesh, Polyhedron};
 pub use primitive::{BadParameter, Primitive, Profile};
 use quadric::Quadric;
 pub(crate) use region::{Region, Side};
+pub(crate) use sheared::Sheared;
 pub(crate) use stretch::Stretch;
 pub(crate) use wall::Wall;
 

@@ -211,6 +211,11 @@ impl Polyhedron {
         (face, self.mesh.mesh.corners(face as usize))
     }
 
+    /// The power of two that brings its coordinates to about 1.
+    pub(crate) fn scale(&self) -> f64 {
+        self.mesh.scale
+    }
+
     /// What says where a line crosses a face with these corners, and whether it goes in or
     /// out there, the same as among all crossings.
     pub(crate) fn crosser<'a>(
@@ -447,10 +452,12 @@ fn level(v: DVec3) -> DVec3 {
     v * inverse_power_of_two(v.abs().max_element())
 }
 
+/// Smaller coordinates count as zero.
+pub(super) const LEAST: f64 = 1e-144;
+
 /// Zero for coordinates whose products have no room for all their digits. It deforms the
 /// mesh like any other rounding.
 fn flushed(p: DVec2) -> DVec2 {
-    const LEAST: f64 = 1e-144;
     p.map(|x| if x.abs() < LEAST { 0.0 } else { x })
 }
 

@@ -98,6 +98,11 @@ impl Block {
         Line::from(Lines { rays, offset: self.offset[i], scale: self.scale[i] })
     }
 
+    /// Whether all rays run the same way.
+    pub(super) fn is_parallel(&self) -> bool {
+        self.common_dir.is_some()
+    }
+
     /// A place on one of the lines as a place on its ray.
     pub(super) fn on_ray(&self, i: usize, t: f64) -> f64 {
         (self.offset[i] + t) * self.scale[i]
@@ -295,6 +300,22 @@ impl Slot {
     }
 }
 
+/// The lines of packet `i`.
+#[inline(always)]
+pub(super) fn rays_of<S: Simd>(block: &Block, simd: S, i: usize) -> Rays<Vector<S>> {
+    block.rays(simd, i, None)
+}
+
+/// The numbers of the bits that are set.
+pub(super) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = set.trailing_zeros() as usize;
+        let is_there = set != 0;
+        set &= set.wrapping_sub(1);
+        is_there.then_some(bit)
+    })
+}
+
 /// Zero for all rays of a packet.
 #[inline(always)]
 fn zero<S: Simd>(simd: S) -> Vector<S> {
@@ -309,7 +330,11 @@ pub(super) fn load<S: Simd>(simd: S, numbers: &Numbers, i: usize) -> Vector<S> {
 }
 
 #[inline(always)]
-fn load3<S: Simd>(simd: S, numbers: &[Numbers; 3], i: usize) -> Vec3<Vector<S>> {
+pub(super) fn load3<S: Simd>(
+    simd: S,
+    numbers: &[Numbers; 3],
+    i: usize,
+) -> Vec3<Vector<S>> {
     let [x, y, z] = numbers;
     Vec3 { x: load(simd, x, i), y: load(simd, y, i), z: load(simd, z, i) }
 }
@@ -321,7 +346,11 @@ pub(super) fn store<S: Simd>(numbers: &mut Numbers, i: usize, vector: Vector<S>)
 }
 
 #[inline(always)]
-fn store3<S: Simd>(numbers: &mut [Numbers; 3], i: usize, vectors: Vec3<Vector<S>>) {
+pub(super) fn store3<S: Simd>(
+    numbers: &mut [Numbers; 3],
+    i: usize,
+    vectors: Vec3<Vector<S>>,
+) {
     let [x, y, z] = numbers;
     store(x, i, vectors.x);
     store(y, i, vectors.y);

@@ -8,7 +8,10 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::block::BLOCK;
+use pulp::Arch;
+
+use super::block::{BLOCK, Block, Slot, bits};
+use super::trial::Trials;
 use crate::eight::{EIGHT, Eight, Numbers, WithEight, with_eight};
 use crate::fan::Fan;
 use crate::ray::Sense;
@@ -74,6 +77,19 @@ pub(super) struct Facing {
     shown: Vec<(u32, [DVec3; 3])>,
     /// For each ray how near its faces may be and where they are in that list, front first.
     of_rays: Vec<Vec<(f64, usize)>>,
+    /// For each ray how many of those it is known to pass by.
+    missed: Vec<usize>,
+    /// For each ray the crossings that were found.
+    crossed: Vec<Vec<(f64, u32, Sense)>>,
+}
+
+/// What is asked for.
+#[derive(Clone, Copy)]
+pub(super) struct Asked<'a> {
+    pub(super) arch: Arch,
+    pub(super) mesh: &'a Polyhedron,
+    pub(super) block: &'a Block,
+    pub(super) open: u64,
 }
 
 /// How a mesh is seen by a fan.
@@ -199,7 +215,7 @@ impl Facing {
         beam: (DVec3, DVec3, DVec3),
         far: f64,
     ) {
-        let Self { packs, kept, done, shown, of_rays, .. } = self;
+        let Self { packs, kept, done, shown, of_rays, missed, .. } = self;
         packs.clear();
         sighting.mesh.packs_in(beam, packs);
         *done = 0;
@@ -212,6 +228,8 @@ impl Facing {
         });
         of_rays.resize_with(BLOCK, Vec::new);
         of_rays.iter_mut().for_each(Vec::clear);
+        missed.clear();
+        missed.resize(BLOCK, 0);
     }
 
     /// Shows the next faces to some rays: those in front of which there is nothing more, up
@@ -263,6 +281,135 @@ impl Facing {
     /// Where faces begin that have not been shown yet.
     fn horizon(&self) -> f64 {
         self.kept.get(self.done).map_or(f64::INFINITY, |kept| kept.range[0])
+    }
+
+    /// Finds where rays first come into the mesh, as far as its faces have been shown, if
+    /// that is after a depth and the mesh is all that matters; `found` is called with the ray,
+    /// the place on its line, the place on the ray and the face. Says of which rays it is
+    /// not sure.
+    pub(super) fn enter(
+        &mut self,
+        asked: &Asked<'_>,
+        trials: &mut Trials,
+        low: f64,
+        mut found: impl FnMut(usize, f64, u32),
+    ) -> u64 {
+        let horizon = self.horizon();
+        let Self { shown, of_rays, missed, .. } = self;
+        let mut rays = 0;
+        for ray in bits(asked.open) {
+            rays |= u64::from(missed[ray] < of_rays[ray].len()) << ray;
+        }
+        if rays == 0 {
+            return 0;
+        }
+        let sure = trials.take(asked.arch, asked.block, asked.mesh, rays);
+        let mut doubt = rays & !sure;
+        rays = sure;
+        while rays != 0 {
+            for ray in bits(rays) {
+                let (_, number) = of_rays[ray][missed[ray]];
+                trials.put(ray, shown[number].1);
+            }
+            trials.ask(asked.arch, rays);
+            for ray in bits(rays) {
+                let (t, answer) = (trials.t[ray], trials.answer[ray]);
+                let (faces, at) = (&of_rays[ray], missed[ray]);
+                if answer <= Trials::MISSED {
+                    missed[ray] += 1;
+                    rays &= !(u64::from(missed[ray] >= faces.len()) << ray);
+                    continue;
+                }
+                rays &= !(1 << ray);
+                let next = faces.get(at + 1).map_or(horizon, |&(near, _)| near);
+                let place = asked.block.on_ray(ray, t);
+                // All that follows is farther along the ray.
+                if answer <= Trials::ENTERED && low <= place && place < next {
+                    found(ray, place, shown[faces[at].1].0);
+                } else {
+                    doubt |= 1 << ray;
+                }
+            }
+        }
+        doubt
+    }
+
+    /// Finds all crossings of rays with faces that have been shown. Says at most how often
+    /// any of them is inside of the mesh, and of which rays that is not sure: those that do not
+    /// come in and out by turns, and in different places.
+    pub(super) fn cross(
+        &mut self,
+        asked: &Asked<'_>,
+        trials: &mut Trials,
+    ) -> (usize, u64) {
+        let Self { shown, of_rays, missed, crossed, .. } = self;
+        crossed.resize_with(BLOCK, Vec::new);
+        crossed.iter_mut().for_each(Vec::clear);
+        let mut rays = 0;
+        for ray in bits(asked.open) {
+            rays |= u64::from(!of_rays[ray].is_empty()) << ray;
+        }
+        if rays == 0 {
+            return (0, 0);
+        }
+        let sure = trials.take(asked.arch, asked.block, asked.mesh, rays);
+        let mut doubt = rays & !sure;
+        rays = sure;
+        let all = rays;
+        while rays != 0 {
+            for ray in bits(rays) {
+                let (_, number) = of_rays[ray][missed[ray]];
+                trials.put(ray, shown[number].1);
+            }
+            trials.ask(asked.arch, rays);
+            for ray in bits(rays) {
+                let (t, answer) = (trials.t[ray], trials.answer[ray]);
+                if answer > Trials::MISSED {
+                    let (face, _) = shown[of_rays[ray][missed[ray]].1];
+                    let is_in = answer <= Trials::ENTERED;
+                    let sense = if is_in { Sense::Enter } else { Sense::Exit };
+                    let crossed = &mut crossed[ray];
+                    let place = crossed.partition_point(|&(other, ..)| other < t);
+                    crossed.insert(place, (t, face, sense));
+                    doubt |= u64::from(answer >= Trials::DOUBT) << ray;
+                }
+                missed[ray] += 1;
+                rays &= !(u64::from(missed[ray] >= of_rays[ray].len()) << ray);
+            }
+        }
+        let mut most = 0;
+        for ray in bits(all & !doubt) {
+            let crossed = &crossed[ray];
+            let is_apart = crossed.windows(2).all(|two| two[0].0 < two[1].0);
+            let takes_turns = crossed
+                .iter()
+                .enumerate()
+                .all(|(i, &(.., sense))| (sense == Sense::Enter) == (i % 2 == 0));
+            if is_apart && takes_turns {
+                most = most.max(crossed.len().div_ceil(2));
+            } else {
+                doubt |= 1 << ray;
+            }
+        }
+        (most, doubt)
+    }
+
+    /// Puts into slots where rays are inside of the mesh, as [`Facing::cross`] has found. A
+    /// ray that is in it after the last crossing comes out at infinity.
+    pub(super) fn fill(&self, slots: &mut [Slot], rays: u64) {
+        for (i, slot) in slots.iter_mut().enumerate() {
+            slot.enter = [f64::INFINITY; BLOCK];
+            slot.exit = [f64::INFINITY; BLOCK];
+            for ray in bits(rays) {
+                let crossed = &self.crossed[ray];
+                if let Some(&(t, face, _)) = crossed.get(2 * i) {
+                    (slot.enter[ray], slot.enter_face[ray]) = (t, f64::from(face));
+                    let never = (f64::INFINITY, 0, Sense::Exit);
+                    let &(t, face, _) = crossed.get(2 * i + 1).unwrap_or(&never);
+                    (slot.exit[ray], slot.exit_face[ray]) = (t, f64::from(face));
+                }
+            }
+        }
     }
 
     /// All crossings of a ray with faces that have been shown. Where the ray is in the mesh

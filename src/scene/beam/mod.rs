@@ -26,6 +26,7 @@ mod survey;
 #[cfg(test)]
 mod tests;
 mod tile;
+mod trial;
 mod walk;
 mod work;
 

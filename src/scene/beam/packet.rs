@@ -69,6 +69,45 @@ impl Packet {
         self.logic = if self.meshes.is_empty() { self.logic(scene, known) } else { None };
     }
 
+    /// The same where it is going to be added where rays are inside of meshes.
+    pub(super) fn choose_with_meshes(
+        &mut self,
+        scene: &Scene,
+        known: &mut Known<'_>,
+        candidates: &[Candidate],
+        along: DVec3,
+    ) {
+        self.choose(scene, known, candidates, along);
+        self.meshes.clear();
+        self.logic = self.logic(scene, known);
+    }
+
+    /// Adds where rays of a block are inside of a mesh, which `fill` knows, in some slots.
+    pub(super) fn add_mesh(
+        &mut self,
+        scene: &Scene,
+        leaf: u32,
+        count: usize,
+        fill: impl FnOnce(&mut [Slot]),
+    ) {
+        let number = self.candidates.iter().position(|c| c.leaf == leaf);
+        let complement = scene.literals[leaf as usize].complement;
+        let weight = self
+            .logic
+            .zip(number)
+            .map_or(0, |(logic, number)| logic.weight(number, complement));
+        let end = self.used + count;
+        if self.slots.len() < end {
+            self.slots.resize(end, Slot::EMPTY);
+        }
+        let slots = &mut self.slots[self.used..end];
+        for slot in &mut *slots {
+            (slot.leaf, slot.weight, slot.is_alone) = (leaf, weight, count == 1);
+        }
+        fill(slots);
+        self.used = end;
+    }
+
     /// The solid as a function of the leaves, if they are few, or all below one node.
     ///
     /// All nodes above leaves that matter are open. If there is but one above all leaves, the

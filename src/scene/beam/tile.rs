@@ -57,7 +57,7 @@ pub(crate) struct TileTracer<'a> {
     /// Which blocks have lines.
     has_lines: u32,
     pub(super) hits: Vec<Option<Crossing>>,
-    packet: Packet,
+    pub(super) packet: Packet,
     pub(super) sightings: Sightings,
     /// For blocks with many leaves or with stretches that end together.
     pub(super) many: Tracer<'a>,
@@ -200,13 +200,13 @@ impl<'a> TileTracer<'a> {
     fn trace(&mut self, part: &Part<'_>, list: &List) {
         let Part { tile, cell, .. } = part;
         self.make_lines(tile, cell.block);
-        if self.trace_meshes(part, list) {
-            return;
-        }
-        let (open, block) = (self.open[cell.block], &self.blocks[cell.block]);
-        let (known, leaves) = self.survey.found(list);
-        self.packet.choose(self.scene, known, leaves, tile.fan.dir.middle);
-        self.packet.meet(self.scene, block, open);
+        let open = self.trace_meshes(part, list).unwrap_or_else(|| {
+            let (open, block) = (self.open[cell.block], &self.blocks[cell.block]);
+            let (known, leaves) = self.survey.found(list);
+            self.packet.choose(self.scene, known, leaves, tile.fan.dir.middle);
+            self.packet.meet(self.scene, block, open);
+            open
+        });
         let mut open = self.enter_at_once(cell, open);
         self.packet.work.walks += u64::from(open.count_ones());
         while open != 0 {
