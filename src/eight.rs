@@ -8,7 +8,7 @@
 //! As with [`lanes`](crate::lanes), whatever works on these is `inline(always)`, and there
 //! are no closures.
 
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 use pulp::{NullaryFnOnce, Scalar256b, Simd};
 
@@ -92,6 +92,7 @@ macro_rules! operator {
 operator!(Add, add, add_f32s);
 operator!(Sub, sub, sub_f32s);
 operator!(Mul, mul, mul_f32s);
+operator!(Div, div, div_f32s);
 
 impl<S: Eight> Numbers<S> {
     #[inline(always)]

@@ -7,7 +7,7 @@ mod build;
 #[cfg(test)]
 mod tests;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use crate::aabb::Aabb;
 use crate::eight::{EIGHT, Eight, Numbers, WithEight, with_eight};
@@ -383,11 +383,6 @@ impl Unit {
     /// weights and its constant.
     pub(crate) fn linear(&self, weights: DVec3, origin: DVec3) -> (DVec3, f64) {
         (weights / self.scale, weights.dot(self.center - origin))
-    }
-
-    /// The same for three functions.
-    pub(crate) fn map(&self, map: DMat3, origin: DVec3) -> (DMat3, DVec3) {
-        (map * (1.0 / self.scale), map * (self.center - origin))
     }
 
     fn around(&self, b: &Aabb) -> Around {

@@ -41,7 +41,7 @@ use cuboid::Cuboid;
 pub(crate) use doubt::{Local, Spot, U};
 use half_space::HalfSpace;
 pub(crate) use line::{Line, Lines, Rays, inverse_power_of_two};
-pub(crate) use pack::{Kept, Linear};
+pub(crate) use pack::{Kept, Linear, Pack, View};
 use place::Frame;
 pub(crate) use place::{ToLocal, inverse};
 pub(crate) use plane::Plane;

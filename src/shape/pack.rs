@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 /// Up to eight faces of a mesh and their corners, in the units of a tree and in single
 /// precision: 320 bytes.
 #[derive(Clone, Debug)]
-pub(super) struct Pack {
+pub(crate) struct Pack {
     /// By corner and axis.
     corners: [[[f32; EIGHT]; 3]; 3],
     /// [`NONE`] behind the last face.
@@ -50,19 +50,9 @@ impl Pack {
     }
 
     /// A face by the number of its bit, if there are so many.
-    pub(super) fn face(&self, bit: u32) -> Option<u32> {
+    #[inline(always)]
+    pub(crate) fn face(&self, bit: u32) -> Option<u32> {
         Some(self.faces[bit as usize]).filter(|&face| face != NONE)
-    }
-
-    /// The corners of a face by the number of its bit, in the units of the tree.
-    #[inline]
-    pub(super) fn corners(&self, bit: u32) -> [DVec3; 3] {
-        let [a, b, c] = &self.corners;
-        let i = bit as usize;
-        let corner = |[x, y, z]: &[[f32; EIGHT]; 3]| {
-            DVec3::new(f64::from(x[i]), f64::from(y[i]), f64::from(z[i]))
-        };
-        [corner(a), corner(b), corner(c)]
     }
 
     /// A bit for each face that is not certainly passed by.
@@ -137,6 +127,100 @@ impl Linear {
             + Numbers::load(simd, b) * y
             + Numbers::load(simd, c) * z
             + Numbers::same(simd, self.constant)
+    }
+}
+
+/// How triangles are seen in a plane, where rays are points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    across: [Linear; 2],
+    depth: Linear,
+    is_parallel: bool,
+    /// What the error of a place is: this, and this for each unit of its coordinates.
+    room: [f32; 2],
+}
+
+impl View {
+    /// With functions for how far to the right and how far up a point is seen, and its depth.
+    /// For rays that run apart the first two are times the depth, which is nowhere less than
+    /// `nearest`.
+    #[expect(clippy::cast_possible_truncation, reason = "there is room for rounding")]
+    pub(crate) fn new(across: [Linear; 2], depth: Linear, nearest: Option<f64>) -> Self {
+        /// More than what dividing rounds.
+        const SINGLE: f64 = 4.0 / 16_777_216.0;
+        let error = across[0].error.max(across[1].error);
+        let room = match nearest {
+            None => [error, 0.0],
+            Some(nearest) => {
+                let depth_left = (nearest - depth.error).max(0.0);
+                [error / depth_left, depth.error / depth_left + SINGLE]
+            }
+        };
+        let room = room.map(|room| (1.001 * room) as f32);
+        Self { across, depth, is_parallel: nearest.is_none(), room }
+    }
+
+    /// Whether places have room in single precision.
+    pub(crate) fn has_room(&self) -> bool {
+        const MOST: f64 = 1e30;
+        let all = [self.across[0], self.across[1], self.depth];
+        all.iter().all(|function| {
+            let weights = function.weights.iter().all(|&w| f64::from(w).abs() < MOST);
+            weights && f64::from(function.constant).abs() < MOST && function.error < MOST
+        })
+    }
+
+    /// What no place on a ray is in front of, if it is found to be at some depth.
+    pub(crate) fn in_front_of(&self, depth: f32) -> f64 {
+        f64::from(depth) - self.depth.error
+    }
+}
+
+/// Eight triangles as they are seen.
+pub(crate) struct Seen<S: Eight> {
+    /// By corner: how far to the right, and how far up.
+    pub(crate) corners: [[Numbers<S>; 2]; 3],
+    /// The depth of the nearest corner.
+    pub(crate) near: Numbers<S>,
+    /// The largest coordinates.
+    pub(crate) far: Numbers<S>,
+    /// At most how far beside where it should be a corner is seen on either axis.
+    pub(crate) off: Numbers<S>,
+}
+
+impl Pack {
+    #[inline(always)]
+    pub(crate) fn seen<S: Eight>(&self, simd: S, view: &View) -> Seen<S> {
+        let [a, b, c] = &self.corners;
+        let depths =
+            [view.depth.of(simd, a), view.depth.of(simd, b), view.depth.of(simd, c)];
+        let a = view.place(simd, a, depths[0]);
+        let b = view.place(simd, b, depths[1]);
+        let c = view.place(simd, c, depths[2]);
+        let far_x = a[0].abs().max(b[0].abs()).max(c[0].abs());
+        let far_y = a[1].abs().max(b[1].abs()).max(c[1].abs());
+        let far = far_x.max(far_y);
+        let [off, for_each] = view.room.map(|number| Numbers::same(simd, number));
+        Seen {
+            corners: [a, b, c],
+            near: depths[0].min(depths[1]).min(depths[2]),
+            far,
+            off: off + far * for_each,
+        }
+    }
+}
+
+impl View {
+    #[inline(always)]
+    fn place<S: Eight>(
+        &self,
+        simd: S,
+        corner: &[[f32; EIGHT]; 3],
+        depth: Numbers<S>,
+    ) -> [Numbers<S>; 2] {
+        let [right, up] = &self.across;
+        let (x, y) = (right.of(simd, corner), up.of(simd, corner));
+        if self.is_parallel { [x, y] } else { [x / depth, y / depth] }
     }
 }
 

@@ -190,19 +190,10 @@ impl Polyhedron {
         with_eight(Keep { packs, numbers, planes, depth, kept });
     }
 
-    /// The number of a face of a pack, and its corners in the units of the tree, rounded to
-    /// single precision.
-    #[inline]
-    pub(crate) fn face_of_pack(&self, pack: u32, bit: u32) -> Option<(u32, [DVec3; 3])> {
-        let pack = &self.mesh.packs[pack as usize];
-        Some((pack.face(bit)?, pack.corners(bit)))
-    }
-
-    /// A linear map of points seen from an origin as one of points in the units of the tree,
-    /// and what is to be added to that.
-    pub(crate) fn seen_in_units(&self, map: DMat3, origin: DVec3) -> (DMat3, DVec3) {
-        let unit = self.mesh.faces.unit();
-        unit.map(map, origin)
+    /// A pack by its number.
+    #[inline(always)]
+    pub(crate) fn pack(&self, number: u32) -> &Pack {
+        &self.mesh.packs[number as usize]
     }
 
     /// A face and its corners.

@@ -1,72 +1,124 @@
 //! Cells of a tile in which there are meshes.
 
 use super::block::{BLOCK, bits};
-use super::mesh::{Asked, Facing, First, Points, Sighting};
+use super::mesh::{Asked, Facing, First};
+use super::sighting::Grid;
 use super::survey::{Candidate, List};
-use super::tile::{Cell, Part, TileTracer};
+use super::tile::{Part, TileTracer};
 use super::trial::Trials;
 use crate::ray::{Crossing, Sense};
 use crate::scene::Scene;
 use crate::scene::trace::Change;
 use crate::shape::{Event, Polyhedron, Shape, Sink};
 
-/// What the rays of a block see of meshes.
+/// What the rays of a tile see of meshes.
 #[derive(Debug)]
 pub(super) struct Sightings {
-    leaves: Vec<Candidate>,
-    /// The faces of the meshes among the leaves that the block may meet.
-    facing: Vec<Facing>,
+    grid: Option<Grid>,
+    /// Leaves that are meshes, and their faces that the tile may meet: those of this tile, and
+    /// others whose memory can be used again.
+    facing: Vec<(u32, Facing)>,
+    used: usize,
+    /// The leaves of the cell that is being looked at, and which of those each is.
+    leaves: Vec<(Candidate, Option<usize>)>,
     trials: Box<Trials>,
     events: Vec<Event>,
 }
 
-impl Default for Sightings {
-    fn default() -> Self {
+impl Sightings {
+    pub(super) fn new() -> Self {
         Self {
-            leaves: Vec::new(),
+            grid: None,
             facing: Vec::new(),
+            used: 0,
+            leaves: Vec::new(),
             trials: Box::new(Trials::EMPTY),
             events: Vec::new(),
         }
+    }
+
+    /// Before another tile.
+    pub(super) fn clear(&mut self) {
+        self.grid = None;
+        self.used = 0;
+    }
+
+    /// Which of the meshes that the tile sees a leaf is.
+    fn number_of(&mut self, part: &Part<'_>, leaf: u32, mesh: &Polyhedron) -> usize {
+        let Self { grid, facing, used, .. } = self;
+        if let Some(k) = facing[..*used].iter().position(|&(other, _)| other == leaf) {
+            return k;
+        }
+        let grid = grid.get_or_insert_with(|| Grid::new(part.tile));
+        if *used == facing.len() {
+            facing.push((leaf, Facing::default()));
+        }
+        let (other, facing) = &mut facing[*used];
+        *other = leaf;
+        facing.look(mesh, part.tile, part.sight, grid);
+        *used += 1;
+        *used - 1
     }
 }
 
 impl TileTracer<'_> {
     /// Traces the rays of a block between two depths where there are meshes. Says which have to
-    /// be walked along; nothing if there are none, or they cannot be looked at by blocks.
+    /// be walked along; nothing if there are none, or they cannot be looked at by tiles.
     pub(super) fn trace_meshes(&mut self, part: &Part<'_>, list: &List) -> Option<u64> {
-        let (_, leaves) = self.survey.found(list);
-        if !leaves.iter().any(|c| mesh_of(self.scene, c).is_some()) {
+        let Self { scene, survey, sightings, .. } = self;
+        let (_, leaves) = survey.found(list);
+        if !leaves.iter().any(|c| mesh_of(scene, c).is_some()) {
             return None;
         }
-        self.sightings.leaves.clear();
-        self.sightings.leaves.extend_from_slice(leaves);
-        self.sightings.facing.resize_with(leaves.len(), Facing::default);
-        let Part { tile, cell, .. } = part;
-        let place = |ray| tile.place_of(cell.block, ray);
-        let points = Points::new(self.open[cell.block], place);
-        if let [candidate] = self.sightings.leaves[..]
+        sightings.leaves.clear();
+        for &candidate in leaves {
+            let number = mesh_of(scene, &candidate)
+                .map(|mesh| sightings.number_of(part, candidate.leaf, mesh));
+            if number.is_some_and(|k| !sightings.facing[k].1.is_seen()) {
+                return None;
+            }
+            sightings.leaves.push((candidate, number));
+        }
+        if let [(candidate, Some(k))] = self.sightings.leaves[..]
             && let Some(mesh) = mesh_of(self.scene, &candidate)
         {
-            let sighting = self.look_at_mesh(part, mesh, &points, 0)?;
-            while self.sightings.facing[0].go_on(
-                &sighting,
-                &points,
-                self.open[cell.block],
-            ) {
-                self.trace_mesh(part, candidate.leaf, mesh);
-            }
+            self.trace_mesh(part, candidate.leaf, mesh, k);
             return Some(0);
         }
-        for k in 0..self.sightings.leaves.len() {
-            if let Some(mesh) = mesh_of(self.scene, &self.sightings.leaves[k]) {
-                let sighting = self.look_at_mesh(part, mesh, &points, k)?;
-                let (facing, open) =
-                    (&mut self.sightings.facing[k], self.open[cell.block]);
-                while facing.go_on(&sighting, &points, open) {}
+        let Self { scene, sightings, .. } = self;
+        for &(candidate, number) in &sightings.leaves {
+            if let Some(k) = number
+                && let Some(mesh) = mesh_of(scene, &candidate)
+                && let Some(grid) = &sightings.grid
+            {
+                let facing = &mut sightings.facing[k].1;
+                while facing.horizon() < part.cell.depth[1]
+                    && facing.go_on(mesh, grid, &self.open)
+                {}
             }
         }
+        self.make_lines(part.tile, part.cell.block);
         Some(self.meet_among_meshes(part, list))
+    }
+
+    /// Traces the rays of a block between two depths where there is one mesh, the k-th, and
+    /// nothing else.
+    fn trace_mesh(&mut self, part: &Part<'_>, leaf: u32, mesh: &Polyhedron, k: usize) {
+        let Part { tile, cell, .. } = part;
+        loop {
+            let facing = &self.sightings.facing[k].1;
+            if facing.rays(cell.block * BLOCK, self.open[cell.block]) != 0 {
+                self.make_lines(tile, cell.block);
+                self.trace_shown(part, leaf, mesh, k);
+            }
+            let Sightings { facing, grid, .. } = &mut self.sightings;
+            let facing = &mut facing[k].1;
+            let is_done = self.open[cell.block] == 0 || facing.horizon() >= cell.depth[1];
+            let Some(grid) = grid.as_ref().filter(|_| !is_done) else { break };
+            if !facing.go_on(mesh, grid, &self.open) {
+                break;
+            }
+        }
     }
 
     /// Finds where the rays of a block are inside of leaves, meshes among them, whose faces have
@@ -79,10 +131,13 @@ impl TileTracer<'_> {
         packet.choose_with_meshes(scene, known, leaves, tile.fan.dir.middle);
         packet.meet(scene, block, open);
         let Sightings { leaves, facing, trials, .. } = sightings;
-        let mut all = 0;
-        for (candidate, facing) in leaves.iter().zip(facing) {
-            if let Some(mesh) = mesh_of(scene, candidate) {
-                let asked = Asked { arch: packet.arch, mesh, block, open: open & !all };
+        let (mut all, first) = (0, cell.block * BLOCK);
+        for (candidate, number) in leaves {
+            if let Some(k) = *number
+                && let Some(mesh) = mesh_of(scene, candidate)
+            {
+                let (arch, facing) = (packet.arch, &mut facing[k].1);
+                let asked = Asked { arch, mesh, block, first, open: open & !all };
                 let (most, doubt) = facing.cross(&asked, trials);
                 all |= doubt;
                 // One slot at least says that no ray is inside.
@@ -97,29 +152,8 @@ impl TileTracer<'_> {
         open & !all
     }
 
-    /// Looks up the faces of a mesh, the k-th leaf, that the rays of a block may cross up
-    /// to the far end of a cell.
-    fn look_at_mesh<'m>(
-        &mut self,
-        part: &Part<'_>,
-        mesh: &'m Polyhedron,
-        points: &Points,
-        k: usize,
-    ) -> Option<Sighting<'m>> {
-        let Part { tile, sight, cell } = part;
-        let sighting = Sighting::new(mesh, tile.fan, points, sight.reach)?;
-        // From where the mesh begins, for it is outside of it that rays are known to be.
-        let [near, far] = sighting.depth();
-        let far = far.min(cell.depth[1]).max(near);
-        let whole = Cell { depth: [near, far], ..*cell };
-        let beam = whole.region(tile, sight).seen_from(&mesh.to_local);
-        self.sightings.facing[k].look(&sighting, points, beam, far);
-        Some(sighting)
-    }
-
-    /// Traces the rays of a block between two depths where there is one mesh and nothing else,
-    /// as far as its faces have been shown.
-    fn trace_mesh(&mut self, part: &Part<'_>, leaf: u32, mesh: &Polyhedron) {
+    /// Traces those of its rays that may meet faces that have been shown.
+    fn trace_shown(&mut self, part: &Part<'_>, leaf: u32, mesh: &Polyhedron, k: usize) {
         let cell = &part.cell;
         let complement = self.scene.literals[leaf as usize].complement;
         let sense_of =
@@ -128,12 +162,13 @@ impl TileTracer<'_> {
         let open = self.open[cell.block];
         let Self { sightings, packet, blocks, hits, .. } = self;
         let Sightings { facing, trials, .. } = sightings;
-        let asked = Asked { arch: packet.arch, mesh, block: &blocks[cell.block], open };
+        let (first, block) = (cell.block * BLOCK, &blocks[cell.block]);
+        let asked = Asked { arch: packet.arch, mesh, block, first, open };
         let mut entered = 0;
-        let doubt = facing[0].enter(&asked, trials, low, |ray, t, face| {
+        let doubt = facing[k].1.enter(&asked, trials, low, |ray, t, face| {
             if t < high {
                 let hit = Crossing { t, leaf, face, sense: sense_of(true) };
-                hits[cell.block * BLOCK + ray] = Some(hit);
+                hits[first + ray] = Some(hit);
                 entered |= 1 << ray;
             }
         });
@@ -141,7 +176,9 @@ impl TileTracer<'_> {
         for ray in bits(doubt) {
             let line = self.blocks[cell.block].line(ray);
             let Sightings { facing, events, .. } = &mut self.sightings;
-            let hit = match facing[0].first(mesh, leaf, ray, &line, cell.depth, events) {
+            let facing = &facing[k].1;
+            let (in_tile, depth) = (first + ray, cell.depth);
+            let hit = match facing.first(mesh, leaf, in_tile, &line, depth, events) {
                 First::Nothing => continue,
                 First::Crossed(Event { leaf, face, .. }, t, is_in) => {
                     Some(Crossing { t, leaf, face, sense: sense_of(is_in) })
@@ -159,12 +196,13 @@ impl TileTracer<'_> {
         let cell = &part.cell;
         let line = self.blocks[cell.block].line(ray);
         let Self { scene, many, survey, sightings, .. } = self;
-        let leaves = sightings.leaves.iter().zip(&sightings.facing);
+        let Sightings { leaves, facing, .. } = sightings;
+        let in_tile = cell.block * BLOCK + ray;
         let fill = |events: &mut Vec<Event>| {
-            for (&Candidate { leaf, faces }, facing) in leaves {
+            for &(Candidate { leaf, faces }, number) in &*leaves {
                 let shape = &scene.shapes[leaf as usize];
-                if let Shape::Polyhedron(mesh) = shape {
-                    facing.crossings(mesh, leaf, ray, &line, events);
+                if let (Shape::Polyhedron(mesh), Some(k)) = (shape, number) {
+                    facing[k].1.crossings(mesh, leaf, in_tile, &line, events);
                 } else {
                     shape.crossings(faces, &line, &mut Sink { events, leaf });
                 }

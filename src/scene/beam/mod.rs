@@ -20,8 +20,10 @@ mod flat;
 mod known;
 mod mesh;
 mod meshes;
+mod outline;
 mod packet;
 mod sight;
+mod sighting;
 mod survey;
 #[cfg(test)]
 mod tests;

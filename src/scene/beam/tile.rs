@@ -27,7 +27,7 @@ const BLOCK_SIDE: usize = 8;
 const BLOCKS_WIDE: usize = SIDE as usize / BLOCK_SIDE;
 
 /// How many blocks a tile has.
-const BLOCKS: usize = BLOCKS_WIDE * BLOCKS_WIDE;
+pub(super) const BLOCKS: usize = BLOCKS_WIDE * BLOCKS_WIDE;
 
 /// No more leaves than this, and a cell is not divided in depth.
 const ENOUGH: usize = 3;
@@ -42,7 +42,8 @@ pub(crate) struct Tile<'a> {
     /// How many columns and rows, at most [`SIDE`] each.
     pub(crate) size: [usize; 2],
     /// Where in the fan the ray in a column and a row is: farther to one side the larger the
-    /// column, and the row.
+    /// column, and the row. How far to the right does not depend on the row, nor how far up on the
+    /// column.
     pub(crate) at: &'a dyn Fn(usize, usize) -> [f64; 2],
 }
 
@@ -74,6 +75,11 @@ pub(super) struct Cell {
     pub(super) depth: [f64; 2],
 }
 
+impl Cell {
+    /// All blocks of a tile, at no depth.
+    pub(super) const WHOLE: Self = Self { block: 0, side: BLOCKS_WIDE, depth: [0.0; 2] };
+}
+
 impl<'a> TileTracer<'a> {
     pub(crate) fn new(scene: &'a Scene) -> Self {
         Self::on(Arch::new(), scene)
@@ -89,7 +95,7 @@ impl<'a> TileTracer<'a> {
             has_lines: 0,
             hits: vec![None; BLOCKS * BLOCK],
             packet: Packet::new(arch),
-            sightings: Sightings::default(),
+            sightings: Sightings::new(),
             many: scene.tracer(),
             alone: scene.tracer(),
         }
@@ -110,6 +116,7 @@ impl<'a> TileTracer<'a> {
         mut found: impl FnMut(usize, usize, Option<Crossing>),
     ) {
         self.hits.fill(None);
+        self.sightings.clear();
         self.has_lines = 0;
         self.open = [0; BLOCKS];
         for j in 0..tile.size[1] {
@@ -129,7 +136,7 @@ impl<'a> TileTracer<'a> {
     }
 
     /// Makes lines of the rays of a block when they are first needed.
-    fn make_lines(&mut self, tile: &Tile<'_>, block: usize) {
+    pub(super) fn make_lines(&mut self, tile: &Tile<'_>, block: usize) {
         if self.has_lines & 1 << block == 0 {
             self.has_lines |= 1 << block;
             let wanted = self.open[block];
@@ -148,7 +155,7 @@ impl<'a> TileTracer<'a> {
         let sight =
             Sight::new(tile.fan, tile.corners(0, BLOCKS_WIDE * BLOCK_SIDE), self.scene);
         let [near, far] = sight.depth;
-        let whole = Cell { block: 0, side: BLOCKS_WIDE, depth: [near.max(0.0), far] };
+        let whole = Cell { depth: [near.max(0.0), far], ..Cell::WHOLE };
         if whole.depth[0] >= far || self.is_done(&whole) {
             return;
         }
@@ -199,8 +206,8 @@ impl<'a> TileTracer<'a> {
     /// Traces the rays of a block between two depths.
     fn trace(&mut self, part: &Part<'_>, list: &List) {
         let Part { tile, cell, .. } = part;
-        self.make_lines(tile, cell.block);
         let open = self.trace_meshes(part, list).unwrap_or_else(|| {
+            self.make_lines(tile, cell.block);
             let (open, block) = (self.open[cell.block], &self.blocks[cell.block]);
             let (known, leaves) = self.survey.found(list);
             self.packet.choose(self.scene, known, leaves, tile.fan.dir.middle);
@@ -314,6 +321,12 @@ fn place(i: usize, j: usize) -> usize {
     let [x, y] = [i / BLOCK_SIDE, j / BLOCK_SIDE];
     let block = (x & 1) | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2;
     block * BLOCK + j % BLOCK_SIDE * BLOCK_SIDE + i % BLOCK_SIDE
+}
+
+/// The number of the first ray of those in a part of a row, as wide as a block.
+#[inline]
+pub(super) fn first_of_row(part: usize, row: usize) -> usize {
+    place(part * BLOCK_SIDE, row)
 }
 
 /// The first ray of a block.

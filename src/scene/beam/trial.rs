@@ -78,7 +78,7 @@ impl Trials {
 
     /// Gives a line the triangle that it is asked about.
     #[inline]
-    pub(super) fn put(&mut self, ray: usize, corners: [DVec3; 3]) {
+    pub(super) fn put(&mut self, ray: usize, corners: &[DVec3; 3]) {
         for (numbers, corner) in self.corners.iter_mut().zip(corners) {
             for (axis, &from) in numbers.iter_mut().zip(&self.axes) {
                 axis[ray] = corner[from];
