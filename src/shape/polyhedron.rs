@@ -19,6 +19,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec2, DVec3};
 use robust::{Coord, orient2d};
 
+use super::corners::Corners;
 use super::doubt::{Local, Spot, U};
 use super::line::inverse_power_of_two;
 use super::pack::{Keep, Kept, Linear, Pack, Sight};
@@ -37,6 +38,7 @@ pub(crate) struct IndexedMesh {
     /// Over packs.
     faces: Bvh,
     packs: Vec<Pack>,
+    corners: Corners,
     /// The power of two that brings the coordinates to about 1, so that products of them
     /// are neither too large nor too small to be exact.
     scale: f64,
@@ -46,15 +48,17 @@ impl IndexedMesh {
     pub(crate) fn new(mesh: Arc<Mesh>) -> Self {
         let corners = |i: u32| mesh.corners(i as usize);
         let boxes = (0..face_count(&mesh)).map(|i| (i, Aabb::around(corners(i))));
-        let mut packs = Vec::new();
+        let (mut packs, mut all) = (Vec::new(), Corners::default());
         let faces = Bvh::grouped(boxes, EIGHT, |unit, faces| {
             packs.push(Pack::new(&mesh, unit, faces));
+            all.add(&mesh, faces);
             u32::try_from(packs.len() - 1).expect("there are fewer packs than faces")
         });
         packs.shrink_to_fit();
+        all.shrink();
         let bounds = faces.bounds();
         let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-        Self { mesh, faces, packs, scale: inverse_power_of_two(largest) }
+        Self { mesh, faces, packs, corners: all, scale: inverse_power_of_two(largest) }
     }
 
     /// The largest coordinates.
@@ -115,7 +119,7 @@ impl Polyhedron {
     /// Hands over all crossings with a line.
     pub(super) fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
         let Some((origin, dir)) = self.in_frame(line) else { return };
-        let IndexedMesh { mesh, faces, packs, scale } = &*self.mesh;
+        let IndexedMesh { mesh, faces, packs, scale, .. } = &*self.mesh;
         let slabs = Slabs::new(origin, dir, &faces.bounds());
         if !slabs.cross(&faces.bounds()) {
             return;
@@ -196,10 +200,10 @@ impl Polyhedron {
         &self.mesh.packs[number as usize]
     }
 
-    /// A face and its corners.
+    /// The corners of a face of a pack, by the number of its bit.
     #[inline]
-    pub(crate) fn face(&self, face: u32) -> (u32, [DVec3; 3]) {
-        (face, self.mesh.mesh.corners(face as usize))
+    pub(crate) fn corners_in_pack(&self, pack: u32, bit: usize) -> [DVec3; 3] {
+        self.mesh.corners.of(pack, bit)
     }
 
     /// The power of two that brings its coordinates to about 1.
@@ -628,7 +632,9 @@ mod tests {
             (0..5_000).flat_map(|i| faces.map(|f| f.map(|k| k + 4 * i))).collect();
         let mesh = Arc::new(Mesh::new(points, faces).expect("tetrahedra are closed"));
         let indexed = IndexedMesh::new(mesh);
-        let bytes = indexed.faces.bytes() + size_of_val(&*indexed.packs);
+        let bytes = indexed.faces.bytes()
+            + size_of_val(&*indexed.packs)
+            + indexed.corners.bytes();
         assert!(bytes <= 110 * 20_000, "{} bytes a triangle", bytes / 20_000);
     }
 }

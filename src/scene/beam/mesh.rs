@@ -9,7 +9,7 @@ use pulp::Arch;
 use glam::DVec3;
 
 use super::block::{BLOCK, Block, Slot, bits};
-use super::outline::{Entry, Lists, Show};
+use super::outline::{Entry, Lists, Show, Shown};
 use super::sight::Sight;
 use super::sighting::{Grid, Sighting};
 use super::tile::{BLOCKS, Cell, Tile};
@@ -29,7 +29,7 @@ pub(super) struct Facing {
     done: usize,
     /// Faces that have been shown to rays, and their corners.
     shown: Vec<(u32, [DVec3; 3])>,
-    faces: Vec<u32>,
+    faces: Vec<Shown>,
     lists: Lists,
     /// For each ray of a block the crossings that were found.
     crossed: Vec<Vec<(f64, u32, Sense)>>,
@@ -100,7 +100,9 @@ impl Facing {
         with_eight(Show { mesh, view, grid, kept, open, faces, lists });
         // All at once: what is not at hand is waited for together.
         let first = shown.len();
-        shown.extend(faces[first..].iter().map(|&face| mesh.face(face)));
+        shown.extend(faces[first..].iter().map(|&Shown { face, pack, bit }| {
+            (face, mesh.corners_in_pack(pack, bit as usize))
+        }));
         true
     }
 

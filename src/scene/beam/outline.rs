@@ -87,6 +87,14 @@ impl Lists {
     }
 }
 
+/// A face, and where in which pack it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shown {
+    pub(super) face: u32,
+    pub(super) pack: u32,
+    pub(super) bit: u32,
+}
+
 /// Finds the rays that faces of some packs may meet.
 pub(super) struct Show<'a> {
     pub(super) mesh: &'a Polyhedron,
@@ -96,7 +104,7 @@ pub(super) struct Show<'a> {
     /// The rays of each block that are asked for.
     pub(super) open: &'a [u64; BLOCKS],
     /// The faces that have been shown.
-    pub(super) faces: &'a mut Vec<u32>,
+    pub(super) faces: &'a mut Vec<Shown>,
     pub(super) lists: &'a mut Lists,
 }
 
@@ -113,7 +121,8 @@ impl WithEight for Show<'_> {
                 let bit = bits.trailing_zeros();
                 bits &= bits - 1;
                 if let Some(face) = pack.face(bit) {
-                    self.show(simd, &outlines, bit as usize, face);
+                    let shown = Shown { face, pack: kept.pack, bit };
+                    self.show(simd, &outlines, bit as usize, shown);
                 }
             }
         }
@@ -122,7 +131,7 @@ impl WithEight for Show<'_> {
 
 impl Show<'_> {
     #[inline(always)]
-    fn show<S: Eight>(&mut self, simd: S, outlines: &Outlines, i: usize, face: u32) {
+    fn show<S: Eight>(&mut self, simd: S, outlines: &Outlines, i: usize, face: Shown) {
         let Self { view, grid, open, faces, lists, .. } = self;
         let columns = between(simd, &grid.columns, outlines.sides[0], i);
         if columns == 0 {
