@@ -174,7 +174,7 @@ fn flushed<L: Lanes>(x: L) -> L {
 
 /// The axes of vectors in another order.
 #[inline(always)]
-pub(crate) fn turned<L: Lanes>(v: Vec3<L>, axes: [usize; 3]) -> Vec3<L> {
+fn turned<L: Lanes>(v: Vec3<L>, axes: [usize; 3]) -> Vec3<L> {
     let all = [v.x, v.y, v.z];
     let [x, y, z] = axes;
     Vec3 { x: all[x], y: all[y], z: all[z] }

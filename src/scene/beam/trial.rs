@@ -79,10 +79,9 @@ impl Trials {
     /// Gives a line the triangle that it is asked about.
     #[inline]
     pub(super) fn put(&mut self, ray: usize, corners: &[DVec3; 3]) {
-        for (numbers, corner) in self.corners.iter_mut().zip(corners) {
-            for (axis, &from) in numbers.iter_mut().zip(&self.axes) {
-                axis[ray] = corner[from];
-            }
+        let ray = ray % BLOCK;
+        for ([x, y, z], corner) in self.corners.iter_mut().zip(corners) {
+            (x[ray], y[ray], z[ray]) = (corner.x, corner.y, corner.z);
         }
     }
 
@@ -174,8 +173,10 @@ impl WithSimd for Ask<'_> {
                     step: load(simd, &trials.step, i),
                 };
                 let [a, b, c] = &trials.corners;
-                let corners = [load3(simd, a, i), load3(simd, b, i), load3(simd, c, i)];
-                let passed = sheared.crossing(corners);
+                let a = turned(simd, a, trials.axes, i);
+                let b = turned(simd, b, trials.axes, i);
+                let c = turned(simd, c, trials.axes, i);
+                let passed = sheared.crossing([a, b, c]);
                 let [missed, entered, left, doubt] =
                     [Trials::MISSED, Trials::ENTERED, Trials::LEFT, Trials::DOUBT];
                 let way = Vector::select(passed.is_exit, z.same(left), z.same(entered));
@@ -185,5 +186,20 @@ impl WithSimd for Ask<'_> {
                 store(&mut trials.answer, i, answer);
             }
         }
+    }
+}
+
+/// The points of packet `i`, their axes in another order.
+#[inline(always)]
+fn turned<S: Simd>(
+    simd: S,
+    points: &[Numbers; 3],
+    [x, y, z]: [usize; 3],
+    i: usize,
+) -> Vec3<Vector<S>> {
+    Vec3 {
+        x: load(simd, &points[x], i),
+        y: load(simd, &points[y], i),
+        z: load(simd, &points[z], i),
     }
 }
