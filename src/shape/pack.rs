@@ -170,6 +170,11 @@ impl View {
         })
     }
 
+    /// More than the error of a depth.
+    pub(crate) fn depth_room(&self) -> f64 {
+        4.0 * self.depth.error
+    }
+
     /// What no place on a ray is in front of, if it is found to be at some depth.
     pub(crate) fn in_front_of(&self, depth: f32) -> f64 {
         f64::from(depth) - self.depth.error

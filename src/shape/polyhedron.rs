@@ -200,6 +200,12 @@ impl Polyhedron {
         &self.mesh.packs[number as usize]
     }
 
+    /// Whether there are so many faces that it takes long to look at all of them.
+    pub(crate) fn is_large(&self) -> bool {
+        const LARGE: usize = 64;
+        self.mesh.packs.len() > LARGE
+    }
+
     /// The corners of a face of a pack, by the number of its bit.
     #[inline]
     pub(crate) fn corners_in_pack(&self, pack: u32, bit: usize) -> [DVec3; 3] {

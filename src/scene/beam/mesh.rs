@@ -12,18 +12,27 @@ use super::block::{BLOCK, Block, Slot, bits};
 use super::outline::{Entry, Lists, Show, Shown};
 use super::sight::Sight;
 use super::sighting::{Grid, Sighting};
-use super::tile::{BLOCKS, Cell, Tile};
+use super::tile::{BLOCKS, Cell, Part, Tile};
 use super::trial::Trials;
 use crate::eight::with_eight;
 use crate::ray::Sense;
 use crate::shape::{Event, Kept, Line, Polyhedron, View};
 
+/// In how many slices, one behind the other, a large mesh is looked at: what is behind the
+/// faces that all rays meet need not be.
+const SLICES: u32 = 4;
+
 /// The faces of one mesh that the rays of a tile may cross.
 #[derive(Debug, Default)]
 pub(super) struct Facing {
     /// Nothing if the mesh cannot be looked at by tiles.
-    view: Option<View>,
+    view: Option<(Sighting, View)>,
+    /// How many slices of the mesh have been looked at, and of how many.
+    looked: u32,
+    slices: u32,
     packs: Vec<u32>,
+    /// All that have been found in slices, by number.
+    known: Vec<u32>,
     /// Packs with faces that the tile may meet, front first, and how many have been shown.
     kept: Vec<Kept>,
     done: usize,
@@ -47,33 +56,74 @@ pub(super) struct Asked<'a> {
 }
 
 impl Facing {
-    /// Looks up the faces that the rays of a tile may meet.
-    pub(super) fn look(
+    /// Sees a mesh from a tile.
+    pub(super) fn see(
         &mut self,
         mesh: &Polyhedron,
         tile: &Tile<'_>,
         sight: &Sight<'_>,
         grid: &Grid,
     ) {
-        let Self { view, packs, kept, done, shown, faces, lists, .. } = self;
-        packs.clear();
+        let Self { view, looked, slices, known, kept, done, shown, faces, lists, .. } =
+            self;
+        known.clear();
         kept.clear();
         shown.clear();
         faces.clear();
         lists.clear();
-        *done = 0;
+        (*looked, *done) = (0, 0);
+        *slices = if mesh.is_large() { SLICES } else { 1 };
         let sighting = Sighting::new(mesh, tile.fan, grid, sight.reach);
-        *view = sighting.map(|s| s.view(mesh, grid)).filter(View::has_room);
-        if let Some(sighting) = sighting.filter(|_| view.is_some()) {
-            // From where the mesh begins, for it is outside of it that rays are known to be.
-            let whole = Cell { depth: sighting.depth(), ..Cell::WHOLE };
-            mesh.packs_in(whole.region(tile, sight).seen_from(&mesh.to_local), packs);
-            let (sides, depths) = (sighting.sides(mesh, grid), sighting.depths(mesh));
-            mesh.keep(packs, &sides, &depths, kept);
-            kept.sort_unstable_by(|a, b| {
-                a.range[0].total_cmp(&b.range[0]).then(a.pack.cmp(&b.pack))
-            });
+        let view_of = |sighting: Sighting| (sighting, sighting.view(mesh, grid));
+        *view = sighting.map(view_of).filter(|(_, view)| view.has_room());
+    }
+
+    /// The depth up to which all faces have been looked up that the tile may meet.
+    fn looked_to(&self) -> f64 {
+        match &self.view {
+            Some((sighting, _)) if self.looked < self.slices => {
+                let [near, far] = sighting.depth();
+                let part = f64::from(self.looked) / f64::from(self.slices);
+                if self.looked == 0 { near } else { near + part * (far - near) }
+            }
+            _ => f64::INFINITY,
         }
+    }
+
+    /// Looks up the faces that the tile may meet in the next slice of the mesh; says whether
+    /// there was one.
+    fn look(&mut self, mesh: &Polyhedron, part: &Part<'_>, grid: &Grid) -> bool {
+        let near = self.looked_to();
+        let Some((sighting, view)) = self.view.filter(|_| self.looked < self.slices)
+        else {
+            return false;
+        };
+        self.looked += 1;
+        let far = self.looked_to().min(sighting.depth()[1]).max(near);
+        let room = view.depth_room();
+        let depth = [near - room, far + room];
+        let Part { tile, sight, .. } = part;
+        let slice = Cell { depth, ..Cell::WHOLE }.region(tile, sight);
+        let Self { packs, known, kept, done, .. } = self;
+        packs.clear();
+        mesh.packs_in(slice.seen_from(&mesh.to_local), packs);
+        if self.slices > 1 {
+            packs.sort_unstable();
+            packs.retain(|pack| known.binary_search(pack).is_err());
+            known.extend_from_slice(packs);
+            known.sort_unstable();
+        }
+        let (sides, depths) = (sighting.sides(mesh, grid), sighting.depths(mesh));
+        let first = kept.len();
+        mesh.keep(packs, &sides, &depths, kept);
+        for kept in &mut kept[first..] {
+            // No ray meets them in front of the slice.
+            kept.range = kept.range.map(|depth| depth.max(near));
+        }
+        kept[*done..].sort_unstable_by(|a, b| {
+            a.range[0].total_cmp(&b.range[0]).then(a.pack.cmp(&b.pack))
+        });
+        true
     }
 
     /// Whether its faces can be looked at by tiles.
@@ -86,16 +136,29 @@ impl Facing {
     pub(super) fn go_on(
         &mut self,
         mesh: &Polyhedron,
+        part: &Part<'_>,
         grid: &Grid,
         open: &[u64; BLOCKS],
     ) -> bool {
-        let Self { view, kept, done, shown, faces, lists, .. } = self;
-        let (Some(first), Some(view)) = (kept.get(*done), view) else { return false };
-        let (mut far, from) = (first.range[1], *done);
-        while let Some(kept) = kept.get(*done).filter(|kept| kept.range[0] <= far) {
-            far = far.max(kept.range[1]);
-            *done += 1;
+        while self.done == self.kept.len() {
+            if !self.look(mesh, part, grid) {
+                return false;
+            }
         }
+        let (mut far, from) = (self.kept[self.done].range[1], self.done);
+        loop {
+            while let Some(kept) =
+                self.kept.get(self.done).filter(|kept| kept.range[0] <= far)
+            {
+                far = far.max(kept.range[1]);
+                self.done += 1;
+            }
+            if self.looked_to() > far || !self.look(mesh, part, grid) {
+                break;
+            }
+        }
+        let Self { view, kept, done, shown, faces, lists, .. } = self;
+        let Some((_, view)) = view else { return false };
         let kept = &kept[from..*done];
         with_eight(Show { mesh, view, grid, kept, open, faces, lists });
         // All at once: what is not at hand is waited for together.
@@ -108,7 +171,8 @@ impl Facing {
 
     /// Where faces begin that have not been shown yet.
     pub(super) fn horizon(&self) -> f64 {
-        self.kept.get(self.done).map_or(f64::INFINITY, |kept| kept.range[0])
+        let next = self.kept.get(self.done).map(|kept| kept.range[0]);
+        next.unwrap_or(f64::INFINITY).min(self.looked_to())
     }
 
     /// Those of some rays of a block that may meet faces that have been shown.

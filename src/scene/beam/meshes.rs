@@ -55,7 +55,7 @@ impl Sightings {
         }
         let (other, facing) = &mut facing[*used];
         *other = leaf;
-        facing.look(mesh, part.tile, part.sight, grid);
+        facing.see(mesh, part.tile, part.sight, grid);
         *used += 1;
         *used - 1
     }
@@ -93,7 +93,7 @@ impl TileTracer<'_> {
             {
                 let facing = &mut sightings.facing[k].1;
                 while facing.horizon() < part.cell.depth[1]
-                    && facing.go_on(mesh, grid, &self.open)
+                    && facing.go_on(mesh, part, grid, &self.open)
                 {}
             }
         }
@@ -115,7 +115,7 @@ impl TileTracer<'_> {
             let facing = &mut facing[k].1;
             let is_done = self.open[cell.block] == 0 || facing.horizon() >= cell.depth[1];
             let Some(grid) = grid.as_ref().filter(|_| !is_done) else { break };
-            if !facing.go_on(mesh, grid, &self.open) {
+            if !facing.go_on(mesh, part, grid, &self.open) {
                 break;
             }
         }
