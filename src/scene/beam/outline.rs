@@ -200,10 +200,10 @@ struct Outlines {
 }
 
 impl Outlines {
-    /// With corners that are off by δ each on both axes, an edge function of a ray in the box
-    /// around the face, W wide and H high, is off by 2 δ (W + H) + 8 δ². Divided by the sum of
-    /// its two weights it is a distance, which is rounded by at most 16 e (2 + F) if no
-    /// coordinate is larger than F, e = 2⁻²⁴.
+    /// With corners that are off by δ each on both axes, an edge function of a ray within δ + ε
+    /// of the box around the face, W wide and H high, is off by 2 δ (W + H + 2 ε) + 8 δ².
+    /// Divided by the sum of its two weights it is a distance, which is rounded by at most
+    /// ε = 16 e (2 + F) if no coordinate is larger than F, e = 2⁻²⁴.
     #[inline(always)]
     fn new<S: Eight>(simd: S, pack: &Pack, view: &View) -> Self {
         let seen = pack.seen(simd, view);
@@ -214,7 +214,7 @@ impl Outlines {
         let single = Numbers::same(simd, 16.0 / 16_777_216.0) * (two + seen.far);
         let off = seen.off;
         let room = off + single;
-        let size = (high_x - low_x) + (high_y - low_y);
+        let size = (high_x - low_x) + (high_y - low_y) + two * single;
         let error = two * off * size + eight * off * off;
         let mut weights = [[[0.0; EIGHT]; 2]; 3];
         let mut bounds = [[[0.0; EIGHT]; 2]; 3];
