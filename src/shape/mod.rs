@@ -10,7 +10,6 @@
 //! 5. and a keyword in the reader, if a format has one.
 
 mod chain;
-mod corners;
 mod cuboid;
 mod doubt;
 mod half_space;

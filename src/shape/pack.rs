@@ -7,13 +7,16 @@ use crate::eight::{EIGHT, Eight, Numbers, WithEight};
 use crate::mesh::Mesh;
 
 /// Up to eight faces of a mesh and their corners, in the units of a tree and in single
-/// precision: 320 bytes.
+/// precision: 448 bytes, whole lines of a cache.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub(crate) struct Pack {
     /// By corner and axis.
     corners: [[[f32; EIGHT]; 3]; 3],
     /// [`NONE`] behind the last face.
     faces: [u32; EIGHT],
+    /// The numbers of the corners among [`Points`].
+    points: [[u32; 3]; EIGHT],
 }
 
 /// No face has this number.
@@ -21,10 +24,21 @@ const NONE: u32 = u32::MAX;
 
 impl Pack {
     #[expect(clippy::cast_possible_truncation, reason = "there is room for rounding")]
-    pub(super) fn new(mesh: &Mesh, unit: &Unit, faces: &[u32]) -> Self {
-        let mut pack = Self { corners: [[[0.0; EIGHT]; 3]; 3], faces: [NONE; EIGHT] };
+    pub(super) fn new(
+        mesh: &Mesh,
+        unit: &Unit,
+        faces: &[u32],
+        points: &mut Points<'_>,
+    ) -> Self {
+        let mut pack = Self {
+            corners: [[[0.0; EIGHT]; 3]; 3],
+            faces: [NONE; EIGHT],
+            points: [[0; 3]; EIGHT],
+        };
         for (i, &face) in faces.iter().enumerate() {
             pack.faces[i] = face;
+            pack.points[i] =
+                mesh.faces()[face as usize].map(|point| points.number(point));
             let corners = mesh.corners(face as usize).map(|p| unit.point(p));
             for (numbers, corner) in pack.corners.iter_mut().zip(corners) {
                 for (axis, x) in numbers.iter_mut().zip(corner.to_array()) {
@@ -55,6 +69,18 @@ impl Pack {
         Some(self.faces[bit as usize]).filter(|&face| face != NONE)
     }
 
+    /// A face and its corners, by the number of its bit.
+    #[inline]
+    pub(super) fn exact(&self, bit: u32, points: &[DVec3]) -> Option<(u32, [DVec3; 3])> {
+        Some((self.face(bit)?, self.corners(bit, points)))
+    }
+
+    /// The corners of a face, by the number of its bit.
+    #[inline]
+    pub(super) fn corners(&self, bit: u32, points: &[DVec3]) -> [DVec3; 3] {
+        self.points[bit as usize].map(|point| points[point as usize])
+    }
+
     /// A bit for each face that is not certainly passed by.
     ///
     /// A face is passed by if the line is on the left of one edge and on the right of another:
@@ -79,6 +105,37 @@ impl Pack {
         let is_left = error.less(bc.max(ca).max(ab));
         let is_right = bc.min(ca).min(ab).less(zero - error);
         !(is_left & is_right) & 0xff
+    }
+}
+
+/// The points of a mesh in the order in which packs want them, so that those of a pack are
+/// near each other in memory.
+pub(super) struct Points<'a> {
+    mesh: &'a Mesh,
+    /// By the number in the mesh.
+    numbers: Vec<u32>,
+    list: Vec<DVec3>,
+}
+
+impl<'a> Points<'a> {
+    pub(super) fn new(mesh: &'a Mesh) -> Self {
+        let count = mesh.points().len();
+        Self { mesh, numbers: vec![NONE; count], list: Vec::with_capacity(count) }
+    }
+
+    /// The number of a point in the list, to which it is added if it is not there.
+    fn number(&mut self, point: u32) -> u32 {
+        let number = &mut self.numbers[point as usize];
+        if *number == NONE {
+            *number = u32::try_from(self.list.len()).expect("points have such numbers");
+            self.list.push(self.mesh.points()[point as usize]);
+        }
+        *number
+    }
+
+    pub(super) fn into_list(mut self) -> Vec<DVec3> {
+        self.list.shrink_to_fit();
+        self.list
     }
 }
 

@@ -19,10 +19,9 @@ use std::sync::Arc;
 use glam::{DMat3, DVec2, DVec3};
 use robust::{Coord, orient2d};
 
-use super::corners::Corners;
 use super::doubt::{Local, Spot, U};
 use super::line::inverse_power_of_two;
-use super::pack::{Keep, Kept, Linear, Pack, Sight};
+use super::pack::{Keep, Kept, Linear, Pack, Points, Sight};
 use super::place::{Frame, ToLocal};
 use super::{Line, Sink, Surface};
 use crate::aabb::Aabb;
@@ -38,7 +37,8 @@ pub(crate) struct IndexedMesh {
     /// Over packs.
     faces: Bvh,
     packs: Vec<Pack>,
-    corners: Corners,
+    /// The corners of the packs, one after the other.
+    points: Vec<DVec3>,
     /// The power of two that brings the coordinates to about 1, so that products of them
     /// are neither too large nor too small to be exact.
     scale: f64,
@@ -48,17 +48,17 @@ impl IndexedMesh {
     pub(crate) fn new(mesh: Arc<Mesh>) -> Self {
         let corners = |i: u32| mesh.corners(i as usize);
         let boxes = (0..face_count(&mesh)).map(|i| (i, Aabb::around(corners(i))));
-        let (mut packs, mut all) = (Vec::new(), Corners::default());
+        let mut packs = Vec::new();
+        let mut points = Points::new(&mesh);
         let faces = Bvh::grouped(boxes, EIGHT, |unit, faces| {
-            packs.push(Pack::new(&mesh, unit, faces));
-            all.add(&mesh, faces);
+            packs.push(Pack::new(&mesh, unit, faces, &mut points));
             u32::try_from(packs.len() - 1).expect("there are fewer packs than faces")
         });
         packs.shrink_to_fit();
-        all.shrink();
         let bounds = faces.bounds();
         let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-        Self { mesh, faces, packs, corners: all, scale: inverse_power_of_two(largest) }
+        let points = points.into_list();
+        Self { mesh, faces, packs, points, scale: inverse_power_of_two(largest) }
     }
 
     /// The largest coordinates.
@@ -119,7 +119,7 @@ impl Polyhedron {
     /// Hands over all crossings with a line.
     pub(super) fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
         let Some((origin, dir)) = self.in_frame(line) else { return };
-        let IndexedMesh { mesh, faces, packs, scale, .. } = &*self.mesh;
+        let IndexedMesh { faces, packs, points, scale, .. } = &*self.mesh;
         let slabs = Slabs::new(origin, dir, &faces.bounds());
         if !slabs.cross(&faces.bounds()) {
             return;
@@ -127,7 +127,7 @@ impl Polyhedron {
         let shear = Shear::new(*scale, origin, dir, &self.to_local.linear);
         let probe = faces.probe(&slabs);
         let sight = Sight::new(&probe, shear.axes, shear.shift);
-        faces.visited(&probe, Crossed { mesh, packs, sight, shear, sink });
+        faces.visited(&probe, Crossed { packs, points, sight, shear, sink });
     }
 }
 
@@ -208,8 +208,8 @@ impl Polyhedron {
 
     /// The corners of a face of a pack, by the number of its bit.
     #[inline]
-    pub(crate) fn corners_in_pack(&self, pack: u32, bit: usize) -> [DVec3; 3] {
-        self.mesh.corners.of(pack, bit)
+    pub(crate) fn corners_in_pack(&self, pack: u32, bit: u32) -> [DVec3; 3] {
+        self.pack(pack).corners(bit, &self.mesh.points)
     }
 
     /// The power of two that brings its coordinates to about 1.
@@ -240,8 +240,8 @@ impl Polyhedron {
 
 /// Finds the faces that a line crosses.
 struct Crossed<'a, 'b> {
-    mesh: &'a Mesh,
     packs: &'a [Pack],
+    points: &'a [DVec3],
     sight: Sight,
     shear: Shear<'a>,
     sink: &'a mut Sink<'b>,
@@ -262,9 +262,8 @@ impl Crossed<'_, '_> {
     fn look_at(&mut self, pack: u32, mut near: u32) {
         let pack = &self.packs[pack as usize];
         while near != 0 {
-            if let Some(face) = pack.face(near.trailing_zeros())
-                && let Some((t, sense)) =
-                    crossing(self.mesh.corners(face as usize), &self.shear)
+            if let Some((face, corners)) = pack.exact(near.trailing_zeros(), self.points)
+                && let Some((t, sense)) = crossing(corners, &self.shear)
             {
                 self.sink.crossing(t, face, sense);
             }
@@ -640,7 +639,7 @@ mod tests {
         let indexed = IndexedMesh::new(mesh);
         let bytes = indexed.faces.bytes()
             + size_of_val(&*indexed.packs)
-            + indexed.corners.bytes();
+            + size_of_val(&*indexed.points);
         assert!(bytes <= 110 * 20_000, "{} bytes a triangle", bytes / 20_000);
     }
 }

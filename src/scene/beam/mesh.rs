@@ -164,7 +164,7 @@ impl Facing {
         // All at once: what is not at hand is waited for together.
         let first = shown.len();
         shown.extend(faces[first..].iter().map(|&Shown { face, pack, bit }| {
-            (face, mesh.corners_in_pack(pack, bit as usize))
+            (face, mesh.corners_in_pack(pack, bit.into()))
         }));
         true
     }
