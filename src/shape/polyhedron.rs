@@ -431,8 +431,12 @@ impl<'a> Shear<'a> {
     #[inline]
     fn seen(&self, point: DVec3) -> (DVec2, f64) {
         let p = self.scale * point - self.origin;
-        let [x, y, z] = self.axes;
-        (flushed(DVec2::new(p[x], p[y]) - self.shift * p[z]), p[z])
+        let (across, along) = match self.axes[2] {
+            0 => (DVec2::new(p.y, p.z), p.x),
+            1 => (DVec2::new(p.z, p.x), p.y),
+            _ => (DVec2::new(p.x, p.y), p.z),
+        };
+        (flushed(across - self.shift * along), along)
     }
 
     /// Where the moved line is seen: by each world axis, the first before the others, and
