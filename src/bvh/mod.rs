@@ -4,19 +4,22 @@
 //! boxes of its eight children, which meet a line side by side.
 
 mod build;
+mod probe;
 #[cfg(test)]
 mod tests;
+mod visit;
 
 use glam::DVec3;
 
 use crate::aabb::Aabb;
-use crate::eight::{EIGHT, Eight, Numbers, WithEight, with_eight};
+use crate::eight::{EIGHT, Eight};
 use crate::lanes::Lanes;
 use build::{Around, Boxed};
+pub(crate) use probe::Probe;
 
 /// Boxes in a tree whose ends hold one item each, or several that have a number together.
 ///
-/// 224 bytes a node. Where ends are divided from eight items on there are at most two nodes
+/// 256 bytes a node. Where ends are divided from eight items on there are at most two nodes
 /// for seven ends in all but adversarial cases.
 #[derive(Debug)]
 pub(crate) struct Bvh {
@@ -27,11 +30,13 @@ pub(crate) struct Bvh {
     depth: usize,
 }
 
-/// Up to eight children and their boxes, in the units of the tree, rounded outward.
+/// Up to eight children and their boxes, in the units of the tree, rounded outward; whole
+/// lines of a cache.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 struct Node {
-    low: [[f32; EIGHT]; 3],
-    high: [[f32; EIGHT]; 3],
+    /// By axis, low and high.
+    planes: [[[f32; EIGHT]; 2]; 3],
     /// Numbers of nodes; with [`END`] numbers of ends.
     children: [u32; EIGHT],
 }
@@ -117,28 +122,14 @@ impl Bvh {
         let bounds = Aabb::new(self.bounds.min - breadth, self.bounds.max + breadth);
         let [near, far] = slabs.range(&bounds);
         if near <= far && near <= 1.0 && far >= -1.0 {
-            let probe = Probe::new(&self.unit, slabs, &self.bounds);
-            self.visited(&probe.widened(&self.unit, slabs, breadth), Each(visit));
+            let probe = Probe::new(&self.unit, slabs);
+            self.visited(&probe.widened(&self.unit, breadth), Each(visit));
         }
     }
 
     /// The line in the frame of the tree.
     pub(crate) fn probe(&self, slabs: &Slabs) -> Probe {
-        Probe::new(&self.unit, slabs, &self.bounds)
-    }
-
-    /// Shows a visitor the ends whose boxes the line crosses.
-    pub(crate) fn visited<V: Visitor>(&self, probe: &Probe, visitor: V) {
-        // A node more is put off for each child but one on each level, and the last ones
-        // are written eight at a time.
-        let room = (EIGHT - 1) * self.depth + 2 * EIGHT;
-        let mut later = [0; 128];
-        if room <= later.len() {
-            with_eight(Traversal { bvh: self, probe, visitor, later: &mut later });
-        } else {
-            let later = &mut vec![0; room];
-            with_eight(Traversal { bvh: self, probe, visitor, later });
-        }
+        Probe::new(&self.unit, slabs)
     }
 
     /// Calls `visit` with each item at an end whose box holds a point between these corners.
@@ -196,171 +187,21 @@ const NONE: u32 = u32::MAX;
 impl Node {
     /// Boxes that nothing crosses.
     const EMPTY: Self = Self {
-        low: [[f32::INFINITY; EIGHT]; 3],
-        high: [[f32::NEG_INFINITY; EIGHT]; 3],
+        planes: [[[f32::INFINITY; EIGHT], [f32::NEG_INFINITY; EIGHT]]; 3],
         children: [NONE; EIGHT],
     };
 
     fn put(&mut self, slot: usize, around: &Around, child: u32) {
-        for k in 0..3 {
-            self.low[k][slot] = around.low[k];
-            self.high[k][slot] = around.high[k];
+        for (k, [low, high]) in self.planes.iter_mut().enumerate() {
+            low[slot] = around.low[k];
+            high[slot] = around.high[k];
         }
         self.children[slot] = child;
     }
 
     fn child(&self, slot: usize) -> Around {
-        Around { low: self.low.map(|x| x[slot]), high: self.high.map(|x| x[slot]) }
-    }
-
-    /// A bit for each child whose box is crossed.
-    ///
-    /// With `e = 2⁻²⁴`, a plane is off by at most `3 e` times its distance from the origin,
-    /// for a difference, a quotient and a product, and by `e` times the origin: [`Probe`] has
-    /// put the planes farther apart than that.
-    #[inline(always)]
-    fn crossed<S: Eight>(&self, simd: S, probe: &Probe) -> u32 {
-        let [x, y, z] = probe.axes;
-        let [near_x, far_x] = self.range(simd, 0, &x);
-        let [near_y, far_y] = self.range(simd, 1, &y);
-        let [near_z, far_z] = self.range(simd, 2, &z);
-        let [from, to] = probe.part.map(|t| Numbers::same(simd, t));
-        let near = near_x.max(near_y).max(near_z.max(from));
-        let far = far_x.min(far_y).min(far_z.min(to));
-        // What is not sorted out is crossed.
-        !far.less(near) & 0xff
-    }
-
-    #[inline(always)]
-    fn range<S: Eight>(&self, simd: S, axis: usize, on: &OnAxis) -> [Numbers<S>; 2] {
-        let inverse = Numbers::same(simd, on.inverse);
-        let (near, far) = if on.inverse < 0.0 {
-            (&self.high[axis], &self.low[axis])
-        } else {
-            (&self.low[axis], &self.high[axis])
-        };
-        let [near_origin, far_origin] = on.origins;
-        [
-            (Numbers::load(simd, near) - Numbers::same(simd, near_origin)) * inverse,
-            (Numbers::load(simd, far) - Numbers::same(simd, far_origin)) * inverse,
-        ]
-    }
-}
-
-struct Traversal<'a, V> {
-    bvh: &'a Bvh,
-    probe: &'a Probe,
-    visitor: V,
-    later: &'a mut [u32],
-}
-
-impl<V: Visitor> WithEight for Traversal<'_, V> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_eight<S: Eight>(self, simd: S) {
-        let Self { bvh, probe, mut visitor, later } = self;
-        later[0] = 0;
-        let mut waiting = 1;
-        while waiting > 0 {
-            waiting -= 1;
-            let at = later[waiting];
-            if at & END != 0 {
-                visitor.end(simd, at & !END);
-                continue;
-            }
-            let node = &bvh.nodes[at as usize];
-            let crossed = node.crossed(simd, probe);
-            let room = &mut later[waiting..waiting + EIGHT];
-            let mut found = 0;
-            for (slot, &child) in node.children.iter().enumerate() {
-                room[found & (EIGHT - 1)] = child;
-                found += (crossed >> slot & 1) as usize;
-            }
-            waiting += found;
-        }
-    }
-}
-
-/// A line in the frame of a tree, its origin near the middle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Probe {
-    axes: [OnAxis; 3],
-    /// The point of the line that is nearest to the middle.
-    pub(crate) origin: DVec3,
-    /// At most how far rounding has put the line or a point beside where they should be, in
-    /// single and in double precision; too much to sort anything out if it is [`ANYWHERE`].
-    pub(crate) pad: f64,
-    dir: DVec3,
-    /// From where to where on the line.
-    part: [f32; 2],
-}
-
-/// So large that it is more than all else, but its square is no number of single precision.
-const ANYWHERE: f64 = 1e30;
-
-#[derive(Clone, Copy, Debug)]
-struct OnAxis {
-    inverse: f32,
-    /// The origin seen from near and from far planes: on the sides that put these apart.
-    origins: [f32; 2],
-}
-
-impl Probe {
-    /// With `e = 2⁻²⁴` and coordinates of at most 1 for boxes and 1.8 for the origin, a plane
-    /// is off by at most `10.3 e`, and by 64 u (|box| + |origin|) in double precision: half
-    /// of it for the nearest point, for the rest see [`Slabs::new`].
-    fn new(unit: &Unit, slabs: &Slabs, bounds: &Aabb) -> Self {
-        const SINGLE: f64 = 16.0 / 16_777_216.0;
-        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
-        let largest = reach + slabs.origin.abs().max_element();
-        let rounding = 32.0 * f64::EPSILON * largest * unit.scale;
-        let dir = slabs.dir * slabs.dir.abs().max_element().inverse_power_of_two();
-        let from = unit.point(slabs.origin);
-        let nearest = from - from.dot(dir) / dir.length_squared() * dir;
-        let (origin, pad) = if rounding < 0.1 && nearest.is_finite() {
-            (nearest, SINGLE + 1.001 * rounding)
-        } else {
-            (DVec3::ZERO, ANYWHERE)
-        };
-        let axes = std::array::from_fn(|k| OnAxis::new(origin[k], dir[k], pad));
-        Self { axes, origin, pad, dir, part: [f32::NEG_INFINITY, f32::INFINITY] }
-    }
-
-    /// The same for boxes as far beside the line, and not farther along it than to `t` = −1 and
-    /// 1, give or take a thousandth and what rounding does.
-    #[expect(clippy::cast_possible_truncation, reason = "there is room for rounding")]
-    fn widened(mut self, unit: &Unit, slabs: &Slabs, breadth: DVec3) -> Self {
-        // Single precision rounds what is wide more than the origin, which is near.
-        let pad = self.pad + 1.001 * unit.scale * breadth;
-        if !pad.is_finite() || pad.max_element() >= ANYWHERE {
-            self.axes = [OnAxis::new(0.0, 1.0, ANYWHERE); 3];
-            return self;
-        }
-        self.axes =
-            std::array::from_fn(|k| OnAxis::new(self.origin[k], self.dir[k], pad[k]));
-        let steps = self.dir.length_squared();
-        let along = unit.scale * slabs.dir.dot(self.dir) / steps;
-        let middle = (unit.point(slabs.origin) - self.origin).dot(self.dir) / steps;
-        let room = 1.001 * along + 4.0 * (self.pad + 1e-6 * middle.abs()) / steps.sqrt();
-        if self.pad < ANYWHERE {
-            self.part = [(middle - room) as f32, (middle + room) as f32];
-        }
-        self
-    }
-}
-
-impl OnAxis {
-    #[expect(clippy::cast_possible_truncation, reason = "there is room for rounding")]
-    fn new(origin: f64, dir: f64, pad: f64) -> Self {
-        // A line parallel to a plane has a quotient too large, not an infinite one: the
-        // difference of coordinates may be zero, and 0 · ∞ is no number.
-        let inverse = (1.0 / dir).clamp(-ANYWHERE, ANYWHERE);
-        let pad = pad.copysign(inverse);
-        Self {
-            inverse: inverse as f32,
-            origins: [(origin + pad) as f32, (origin - pad) as f32],
-        }
+        let [low, high] = [0, 1].map(|side| self.planes.map(|on| on[side][slot]));
+        Around { low, high }
     }
 }
 
