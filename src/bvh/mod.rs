@@ -26,6 +26,8 @@ pub(crate) struct Bvh {
     bounds: Aabb,
     unit: Unit,
     nodes: Vec<Node>,
+    /// The children of the root with boxes of double precision, if they are all ends.
+    few: Vec<(u32, Aabb)>,
     /// How many nodes there are on the longest way down.
     depth: usize,
 }
@@ -85,7 +87,11 @@ impl Bvh {
             numbers.extend(items.iter().map(|boxed| boxed.item));
             end(&unit, &numbers)
         });
-        Self { bounds, unit, nodes, depth }
+        let few = match &nodes[..] {
+            [root] => root.ends(&unit, &bounds),
+            _ => Vec::new(),
+        };
+        Self { bounds, unit, nodes, few, depth }
     }
 
     /// Its frame.
@@ -105,8 +111,14 @@ impl Bvh {
     }
 
     /// Calls `visit` with each item at an end whose box the line crosses.
-    pub(crate) fn crossed(&self, slabs: &Slabs, visit: impl FnMut(u32)) {
-        if slabs.cross(&self.bounds) {
+    pub(crate) fn crossed(&self, slabs: &Slabs, mut visit: impl FnMut(u32)) {
+        if !self.few.is_empty() {
+            for (end, bounds) in &self.few {
+                if slabs.cross(bounds) {
+                    visit(*end);
+                }
+            }
+        } else if slabs.cross(&self.bounds) {
             self.visited(&self.probe(slabs), Each(visit));
         }
     }
@@ -197,6 +209,20 @@ impl Node {
             high[slot] = around.high[k];
         }
         self.children[slot] = child;
+    }
+
+    /// The children, if they are all ends, and their boxes, about as much wider as single
+    /// precision makes them.
+    fn ends(&self, unit: &Unit, bounds: &Aabb) -> Vec<(u32, Aabb)> {
+        const SINGLE: f64 = 16.0 / 16_777_216.0;
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let room = SINGLE / unit.scale + 2.0 * f64::EPSILON * reach;
+        let around = |slot: usize| unit.aabb(&self.child(slot)).grown(room);
+        let children = self.children.into_iter().enumerate();
+        children
+            .filter(|&(_, child)| child != NONE)
+            .map(|(slot, child)| (child & !END, around(slot)))
+            .collect()
     }
 
     fn child(&self, slot: usize) -> Around {
