@@ -59,6 +59,12 @@ pub(crate) struct Unit {
 pub(crate) trait Visitor {
     /// Always inlined.
     fn end<S: Eight>(&mut self, simd: S, end: u32);
+
+    /// How far along the line, as [`Probe::place`] has it, ends are looked for.
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        f32::INFINITY
+    }
 }
 
 impl Bvh {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Slabs, Unit};
+use super::{Slabs, Unit, rounded_down};
 use crate::lanes::Lanes;
 
 /// A line in the frame of a tree, its origin near the middle.
@@ -79,6 +79,31 @@ impl Probe {
             self.part = [(middle - room) as f32, (middle + room) as f32];
         }
         self
+    }
+
+    /// Leaves out what comes before a place of the line that was given.
+    pub(crate) fn starting(mut self, t: f64) -> Self {
+        if let Some([place, room]) = self.place(t) {
+            self.part[0] = rounded_down(place - room);
+        }
+        self
+    }
+
+    /// The limit behind which no box holds a crossing at a place of the line that was given,
+    /// and how much farther than that all crossings are in boxes behind the limit.
+    pub(crate) fn limit(&self, t: f64) -> Option<(f32, f64)> {
+        let [place, room] = self.place(t)?;
+        Some((-rounded_down(-place - room), 0.5 * room / self.along))
+    }
+
+    /// A place of the line that was given, and more than it can differ from where boxes
+    /// around a crossing there begin or end: twice what puts planes apart, and some for rounding
+    /// where the middle is far away. Nothing if there is no telling.
+    fn place(&self, t: f64) -> Option<[f64; 2]> {
+        let place = self.middle + self.along * t;
+        let room = 4.0 * (self.pad + 1e-6 * self.middle.abs());
+        let is_clear = room < 1.0 && self.along.is_normal() && place.is_finite();
+        is_clear.then_some([place, room])
     }
 }
 

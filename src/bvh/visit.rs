@@ -1,4 +1,4 @@
-//! Which ends of a tree a line may cross.
+//! Which ends of a tree a line may cross: in any order, or the nearest first.
 
 use super::probe::{OnAxis, Probe};
 use super::{Bvh, END, Node, Visitor};
@@ -14,6 +14,18 @@ impl Bvh {
         } else {
             let later = &mut vec![0; room];
             with_eight(Traversal { bvh: self, probe, visitor, later });
+        }
+    }
+
+    /// The same, the nearest box of each node first, up to the visitor's limit.
+    pub(crate) fn visited_in_order<V: Visitor>(&self, probe: &Probe, visitor: &mut V) {
+        let room = self.room();
+        let mut later = [(0.0, 0); 64];
+        if room <= later.len() {
+            with_eight(InOrder { bvh: self, probe, visitor, later: &mut later });
+        } else {
+            let later = &mut vec![(0.0, 0); room];
+            with_eight(InOrder { bvh: self, probe, visitor, later });
         }
     }
 
@@ -59,6 +71,70 @@ impl<V: Visitor> WithEight for Traversal<'_, V> {
             }
             waiting -= 1;
             at = later[waiting];
+        }
+    }
+}
+
+struct InOrder<'a, V> {
+    bvh: &'a Bvh,
+    probe: &'a Probe,
+    visitor: &'a mut V,
+    later: &'a mut [(f32, u32)],
+}
+
+impl<V: Visitor> WithEight for InOrder<'_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_eight<S: Eight>(self, simd: S) {
+        let Self { bvh, probe, visitor, later } = self;
+        let across = Across::new(simd, probe);
+        let from = Numbers::same(simd, probe.part[0]);
+        let (mut waiting, mut at) = (0, 0);
+        loop {
+            if at & END != 0 {
+                visitor.end(simd, at & !END);
+            } else {
+                let node = &bvh.nodes[at as usize];
+                let [near, far] = across.ranges(simd, node);
+                let (near, far) =
+                    (near.max(from), far.min(Numbers::same(simd, visitor.limit())));
+                let mut crossed = !far.less(near) & 0xff;
+                if crossed != 0 {
+                    let places = near.store();
+                    let first = next_bit(&mut crossed);
+                    at = node.children[first];
+                    if crossed != 0 {
+                        let mut place = places[first];
+                        let room = &mut later[waiting..waiting + EIGHT];
+                        let mut others = 0;
+                        while crossed != 0 {
+                            let other = next_bit(&mut crossed);
+                            let mut put_off = (places[other], node.children[other]);
+                            if put_off.0 < place {
+                                std::mem::swap(&mut put_off.0, &mut place);
+                                std::mem::swap(&mut put_off.1, &mut at);
+                            }
+                            room[others % EIGHT] = put_off;
+                            others += 1;
+                        }
+                        waiting += others;
+                    }
+                    continue;
+                }
+            }
+            let limit = visitor.limit();
+            loop {
+                if waiting == 0 {
+                    return;
+                }
+                waiting -= 1;
+                let (place, child) = later[waiting];
+                if place <= limit {
+                    at = child;
+                    break;
+                }
+            }
         }
     }
 }

@@ -7,6 +7,7 @@ mod compile;
 mod copies;
 mod depart;
 mod digits;
+mod first;
 mod intern;
 mod near;
 mod options;

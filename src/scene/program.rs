@@ -170,6 +170,22 @@ impl Program {
         }
     }
 
+    /// Whether the root depends on a leaf that has this value.
+    pub(crate) fn depends(&self, counts: &[u32], parent: u32, mut value: bool) -> bool {
+        let mut at = parent;
+        loop {
+            let (node, count) = (&self.nodes[at as usize], counts[at as usize]);
+            if count + u32::from(!value) != node.need {
+                return false;
+            }
+            if at == 0 {
+                return true;
+            }
+            value = count >= node.need;
+            at = node.parent;
+        }
+    }
+
     /// Whether all nodes from `parent` up to the root have this value.
     pub(crate) fn agrees(&self, counts: &[u32], parent: u32, value: bool) -> bool {
         let mut at = parent;

@@ -17,10 +17,14 @@ use crate::shape::{ALL, Event, Line, Sink};
 pub struct Tracer<'a> {
     pub(super) scene: &'a Scene,
     /// How many children of each node are true.
-    counts: Vec<u32>,
+    pub(super) counts: Vec<u32>,
     /// How often each leaf has been entered and not yet left.
     winding: Vec<i32>,
-    events: Vec<Event>,
+    pub(super) events: Vec<Event>,
+    /// The meshes that the line of the ray asked last can meet.
+    pub(super) meshes: Vec<u32>,
+    /// Where on that line one of them matters.
+    pub(super) matters: Vec<[f64; 2]>,
     /// Of the events at one place, which are of leaves that had the root's value before, as
     /// had all nodes above them.
     followers: Vec<bool>,
@@ -59,6 +63,8 @@ impl<'a> Tracer<'a> {
             counts: scene.far_away.clone(),
             winding: vec![0; scene.shapes.len()],
             events: Vec::new(),
+            meshes: Vec::new(),
+            matters: Vec::new(),
             followers: Vec::new(),
             spans: Vec::new(),
             collapsed: 0,
@@ -87,13 +93,6 @@ impl<'a> Tracer<'a> {
     /// The answer of [`Tracer::spans`] once more, for the ray that was asked last.
     pub(crate) fn spans_found(&self) -> &[Span] {
         &self.spans
-    }
-
-    /// The first crossing at `t ≥ 0`: where the ray enters, or where it comes out if it
-    /// starts inside.
-    pub fn first_hit(&mut self, ray: &Ray) -> Option<Crossing> {
-        let spans = self.spans(ray);
-        spans.iter().flat_map(|span| [span.enter, span.exit]).find(|c| c.t >= 0.0)
     }
 
     /// All crossings with all leaves that the line can meet, in order.
@@ -209,7 +208,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// The events at the same place as one.
-    fn group(&self, from: usize) -> std::ops::Range<usize> {
+    pub(super) fn group(&self, from: usize) -> std::ops::Range<usize> {
         let t = self.events[from].t;
         #[expect(clippy::float_cmp, reason = "one place is one number")]
         let group = self.events[from..].iter().take_while(|event| event.t == t).count();
@@ -218,15 +217,21 @@ impl<'a> Tracer<'a> {
 
     /// Toggles the leaves of the events at one place; says what the solid does there, and to which
     /// event that is put down.
-    fn pass(&mut self, group: std::ops::Range<usize>) -> Option<(Event, Sense)> {
+    pub(super) fn pass(
+        &mut self,
+        group: std::ops::Range<usize>,
+    ) -> Option<(Event, Sense)> {
         let before = self.root();
+        if group.len() == 1 {
+            let event = self.events[group.start];
+            self.cross(event.leaf, event.sense);
+            let after = self.root();
+            return (before != after).then(|| (event, change_to(after)));
+        }
         self.note_followers(group.clone(), before);
         self.toggle(group.clone());
         let after = self.root();
-        (before != after).then(|| {
-            let sense = if after { Sense::Enter } else { Sense::Exit };
-            (self.owner(group, after), sense)
-        })
+        (before != after).then(|| (self.owner(group, after), change_to(after)))
     }
 
     /// Adds a span behind the others, or to the last one if there is no number between
@@ -243,23 +248,38 @@ impl<'a> Tracer<'a> {
 
     /// Toggles the leaves of some events.
     fn toggle(&mut self, group: std::ops::Range<usize>) {
+        for event in group {
+            let Event { leaf, sense, .. } = self.events[event];
+            self.cross(leaf, sense);
+        }
+    }
+
+    /// Tells the counters that a leaf is entered or left.
+    #[inline]
+    pub(super) fn cross(&mut self, leaf: u32, sense: Sense) {
         let Scene { program, literals, .. } = self.scene;
-        for event in &self.events[group] {
-            let literal = literals[event.leaf as usize];
-            let winding = &mut self.winding[event.leaf as usize];
-            let was_inside = *winding > 0;
-            *winding += match event.sense {
-                Sense::Enter => 1,
-                Sense::Exit => -1,
-            };
-            let is_inside = *winding > 0;
-            if was_inside != is_inside {
-                program.toggle(
-                    &mut self.counts,
-                    literal.parent,
-                    is_inside != literal.complement,
-                );
-            }
+        let literal = literals[leaf as usize];
+        let winding = &mut self.winding[leaf as usize];
+        let was_inside = *winding > 0;
+        *winding += match sense {
+            Sense::Enter => 1,
+            Sense::Exit => -1,
+        };
+        let is_inside = *winding > 0;
+        if was_inside != is_inside {
+            program.toggle(
+                &mut self.counts,
+                literal.parent,
+                is_inside != literal.complement,
+            );
+        }
+    }
+
+    /// Goes back through the first events to before them all, which brings the counters back.
+    pub(super) fn pass_back(&mut self, passed: usize) {
+        for event in (0..passed).rev() {
+            let Event { leaf, sense, .. } = self.events[event];
+            self.cross(leaf, sense.reversed());
         }
     }
 
@@ -298,15 +318,13 @@ impl<'a> Tracer<'a> {
     fn note_followers(&mut self, group: std::ops::Range<usize>, value: bool) {
         let mut followers = std::mem::take(&mut self.followers);
         followers.clear();
-        if group.len() > 1 {
-            let Scene { program, literals, .. } = self.scene;
-            let follows = |event: &Event| {
-                let literal = literals[event.leaf as usize];
-                (self.is_in(event.leaf) != literal.complement) == value
-                    && program.agrees(&self.counts, literal.parent, value)
-            };
-            followers.extend(self.events[group].iter().map(follows));
-        }
+        let Scene { program, literals, .. } = self.scene;
+        let follows = |event: &Event| {
+            let literal = literals[event.leaf as usize];
+            (self.is_in(event.leaf) != literal.complement) == value
+                && program.agrees(&self.counts, literal.parent, value)
+        };
+        followers.extend(self.events[group].iter().map(follows));
         self.followers = followers;
     }
 
@@ -334,13 +352,18 @@ impl<'a> Tracer<'a> {
     }
 }
 
+/// The sense in which the root takes this value.
+fn change_to(value: bool) -> Sense {
+    if value { Sense::Enter } else { Sense::Exit }
+}
+
 /// Whether a place is between two, of which one that is not a number sets no limit.
 pub(super) fn is_within(t: f64, [near, far]: [f64; 2]) -> bool {
     !(t < near || t > far)
 }
 
 /// By place, then in the order of the tree.
-fn in_order(a: &Event, b: &Event) -> Ordering {
+pub(super) fn in_order(a: &Event, b: &Event) -> Ordering {
     a.t.partial_cmp(&b.t)
         .unwrap_or(Ordering::Equal)
         .then(a.leaf.cmp(&b.leaf))

@@ -9,6 +9,7 @@
 //! 4. give it a maker in `solid.rs`;
 //! 5. and a keyword in the reader, if a format has one.
 
+mod ahead;
 mod chain;
 mod cuboid;
 mod doubt;
@@ -36,6 +37,7 @@ use glam::DVec3;
 use crate::aabb::Aabb;
 use crate::lanes::whole;
 use crate::ray::Sense;
+pub(crate) use ahead::Ahead;
 pub(crate) use chain::Chain;
 use cuboid::Cuboid;
 pub(crate) use doubt::{Local, Spot, U};

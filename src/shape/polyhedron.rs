@@ -33,15 +33,15 @@ use crate::ray::Sense;
 /// A mesh and the hierarchy over its faces, shared by all its copies in a scene.
 #[derive(Debug)]
 pub(crate) struct IndexedMesh {
-    mesh: Arc<Mesh>,
+    pub(super) mesh: Arc<Mesh>,
     /// Over packs.
-    faces: Bvh,
-    packs: Vec<Pack>,
+    pub(super) faces: Bvh,
+    pub(super) packs: Vec<Pack>,
     /// The corners of the packs, one after the other.
-    points: Vec<DVec3>,
+    pub(super) points: Vec<DVec3>,
     /// The power of two that brings the coordinates to about 1, so that products of them
     /// are neither too large nor too small to be exact.
-    scale: f64,
+    pub(super) scale: f64,
 }
 
 impl IndexedMesh {
@@ -90,6 +90,11 @@ impl Polyhedron {
         let mesh = &mesh.mesh;
         let used = mesh.faces().iter().flatten();
         Aabb::around(used.map(|&i| frame.point(mesh.points()[i as usize])))
+    }
+
+    /// The mesh and its hierarchy.
+    pub(super) fn indexed(&self) -> &IndexedMesh {
+        &self.mesh
     }
 
     /// A number that copies of one mesh share and others do not.
@@ -230,7 +235,7 @@ impl Polyhedron {
 
     /// The origin and the direction of a line in the frame of the mesh; nothing of a mesh too
     /// small to be told from a point of the scene.
-    fn in_frame(&self, line: &Line) -> Option<(DVec3, DVec3)> {
+    pub(super) fn in_frame(&self, line: &Line) -> Option<(DVec3, DVec3)> {
         let origin = self.to_local.origin_of(line);
         let dir = self.to_local.direction(line.dir);
         (origin.is_finite() && dir.is_finite() && dir != DVec3::ZERO)
@@ -390,15 +395,15 @@ fn distance_to_edge(point: DVec3, a: DVec3, b: DVec3) -> f64 {
 }
 
 /// The map that takes a line to the third axis.
-struct Shear<'a> {
+pub(super) struct Shear<'a> {
     /// A power of two that brings all coordinates seen from the origin to 1 or less.
     scale: f64,
     origin: DVec3,
     /// Which axes become the first, second and third: the third is the one along which the
     /// line is steepest, and the first two follow it in turn, whichever way the line runs,
     /// so that a line and its reverse are moved to the same side.
-    axes: [usize; 3],
-    shift: DVec2,
+    pub(super) axes: [usize; 3],
+    pub(super) shift: DVec2,
     /// How fast the line runs along the third axis; negative if it runs against it.
     speed: f64,
     /// What a place along the line must be multiplied by to count in its directions.
@@ -416,7 +421,7 @@ struct Corner {
 
 impl<'a> Shear<'a> {
     /// The scale is that of the mesh.
-    fn new(scale: f64, origin: DVec3, dir: DVec3, world: &'a DMat3) -> Self {
+    pub(super) fn new(scale: f64, origin: DVec3, dir: DVec3, world: &'a DMat3) -> Self {
         let scale = scale.min(inverse_power_of_two(origin.abs().max_element()));
         let step = (inverse_power_of_two(dir.abs().max_element()) / scale).min(f64::MAX);
         let dir = level(dir);
@@ -469,7 +474,7 @@ fn flushed(p: DVec2) -> DVec2 {
 ///
 /// A triangle that is counter-clockwise seen from where the third axis goes faces away from
 /// where it comes from, so a line along it comes out there.
-fn crossing(corners: [DVec3; 3], shear: &Shear<'_>) -> Option<(f64, Sense)> {
+pub(super) fn crossing(corners: [DVec3; 3], shear: &Shear<'_>) -> Option<(f64, Sense)> {
     let [a, b, c] = corners;
     let ((a, a_z), (b, b_z), (c, c_z)) = (shear.seen(a), shear.seen(b), shear.seen(c));
     let bc = turn(b, c);
