@@ -71,7 +71,7 @@ impl Bvh {
     /// The hierarchy over some items, whose boxes, all bounded, are looked up by number.
     pub(crate) fn over(items: Vec<u32>, bounds: &[Aabb]) -> Self {
         let items = items.into_iter().map(|i| (i, bounds[i as usize]));
-        Self::grouped(items, 1, |_, items| items[0])
+        Self::grouped(items, 1, |items| items[0])
     }
 
     /// The hierarchy over items and their boxes, of which at most `most` are at an end; `end`
@@ -79,7 +79,7 @@ impl Bvh {
     pub(crate) fn grouped(
         items: impl Iterator<Item = (u32, Aabb)> + Clone,
         most: usize,
-        mut end: impl FnMut(&Unit, &[u32]) -> u32,
+        mut end: impl FnMut(&[u32]) -> u32,
     ) -> Self {
         let bounds =
             items.clone().fold(Aabb::EMPTY, |around, (_, bounds)| around.hull(bounds));
@@ -91,7 +91,7 @@ impl Bvh {
         let (nodes, depth) = build::tree(&mut boxed, most, |items| {
             numbers.clear();
             numbers.extend(items.iter().map(|boxed| boxed.item));
-            end(&unit, &numbers)
+            end(&numbers)
         });
         let few = match &nodes[..] {
             [root] => root.ends(&unit, &bounds),

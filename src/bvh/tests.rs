@@ -48,7 +48,7 @@ proptest! {
             .collect();
         let items = (0..).zip(boxes.iter().copied());
         let mut ends: Vec<Vec<u32>> = Vec::new();
-        let tree = Bvh::grouped(items, most, |_, items| {
+        let tree = Bvh::grouped(items, most, |items| {
             ends.push(items.to_vec());
             count(ends.len() - 1)
         });

@@ -48,13 +48,20 @@ impl IndexedMesh {
     pub(crate) fn new(mesh: Arc<Mesh>) -> Self {
         let corners = |i: u32| mesh.corners(i as usize);
         let boxes = (0..face_count(&mesh)).map(|i| (i, Aabb::around(corners(i))));
-        let mut packs = Vec::new();
-        let mut points = Points::new(&mesh);
-        let faces = Bvh::grouped(boxes, EIGHT, |unit, faces| {
-            packs.push(Pack::new(&mesh, unit, faces, &mut points));
-            u32::try_from(packs.len() - 1).expect("there are fewer packs than faces")
+        // Packs are made when the tree is there: it takes more memory to be made than to be
+        // kept.
+        let mut in_order = Vec::with_capacity(mesh.faces().len());
+        let mut ends = vec![0];
+        let faces = Bvh::grouped(boxes, EIGHT, |faces| {
+            in_order.extend_from_slice(faces);
+            ends.push(in_order.len());
+            u32::try_from(ends.len() - 2).expect("there are fewer packs than faces")
         });
-        packs.shrink_to_fit();
+        let mut points = Points::new(&mesh);
+        let mut pack = |ends: &[usize]| {
+            Pack::new(&mesh, faces.unit(), &in_order[ends[0]..ends[1]], &mut points)
+        };
+        let packs = ends.windows(2).map(&mut pack).collect();
         let bounds = faces.bounds();
         let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
         let points = points.into_list();

@@ -163,9 +163,11 @@ impl Facing {
         with_eight(Show { mesh, view, grid, kept, open, faces, lists });
         // All at once: what is not at hand is waited for together.
         let first = shown.len();
-        shown.extend(faces[first..].iter().map(|&Shown { face, pack, bit }| {
-            (face, mesh.corners_in_pack(pack, bit.into()))
-        }));
+        shown.extend(
+            faces[first..].iter().map(|&Shown { face, pack, bit }| {
+                (face, mesh.corners_in_pack(pack, bit))
+            }),
+        );
         true
     }
 
