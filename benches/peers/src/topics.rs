@@ -21,7 +21,7 @@ use crate::{Call, Run, goals, povray, queries, threads};
 /// The side of pictures.
 const SIZE: u32 = 1024;
 /// The side of the grid of rays through meshes.
-const GRID: u32 = 512;
+const GRID: u32 = 1024;
 /// How many single rays are asked about.
 const COUNT: u32 = 1 << 17;
 /// How many points are asked about at once.
@@ -52,8 +52,8 @@ pub fn primary(run: &Run) -> Result<Table> {
             "ratio",
             "POV-Ray, ns",
             "ratio",
-            "goal, ns",
             "floor",
+            "goal",
             "reached",
         ],
     );
@@ -96,9 +96,12 @@ pub fn primary(run: &Run) -> Result<Table> {
                 },
             ),
             ratio(povray.map(|(time, _)| time), ours),
-            number(goal),
             format!("{floor}× fidget"),
-            reached(goal.map(|goal| ours <= goal), fidget.map(|f| f >= floor * ours)),
+            ratio(goal.map(|goal| goal.faster()), 1.0),
+            reached(
+                goal.zip(fidget).map(|(goal, time)| time >= goal.faster() * ours),
+                fidget.map(|time| time >= floor * ours),
+            ),
         ]);
     }
     Ok(table)
@@ -202,9 +205,10 @@ pub fn meshes(run: &Run) -> Result<Table> {
             "solidray, ns",
             "Embree, ns",
             "Embree robust, ns",
-            "solidray / floor",
-            "goal, ns",
+            "Embree / solidray",
             "floor",
+            "goal",
+            "solidray / floor",
             "reached",
         ],
     );
@@ -273,10 +277,14 @@ pub fn meshes(run: &Run) -> Result<Table> {
                 number(Some(time)),
                 number(plain[i]),
                 number(robust[i]),
-                limit.map_or_else(|| number(None), |limit| ratio(Some(time), limit)),
-                number(Some(goal)),
+                ratio(plain[i], time),
                 floor,
-                reached(Some(time <= goal), limit.map(|limit| time <= limit)),
+                ratio(Some(goal.faster()), 1.0),
+                limit.map_or_else(|| number(None), |limit| ratio(Some(time), limit)),
+                reached(
+                    plain[i].map(|theirs| theirs >= goal.faster() * time),
+                    limit.map(|limit| time <= limit),
+                ),
             ]);
         }
     }
@@ -299,17 +307,7 @@ fn mesh(solid: &Solid) -> Result<&Mesh> {
 pub fn membership(run: &Run) -> Result<Table> {
     let mut table = Table::new(
         "membership",
-        &[
-            "scene",
-            "solidray, ns",
-            "fidget, ns",
-            "ratio",
-            "yardstick, ns",
-            "ratio",
-            "goal, ns",
-            "floor",
-            "reached",
-        ],
+        &["scene", "solidray, ns", "fidget, ns", "ratio", "floor", "goal", "reached"],
     );
     for name in run.formulas().chain(run.meshes()) {
         let (subject, scene) = compiled(name)?;
@@ -333,25 +331,19 @@ pub fn membership(run: &Run) -> Result<Table> {
         });
         let [ours, fidget] = run.in_turns([Some(ours), bulk])?;
         let ours = ours.unwrap_or(f64::NAN);
-        let (goal, yardstick) = (goals::membership(name), goals::yardstick(name));
-        let (floor, met) = match (yardstick, fidget) {
-            (Some(time), _) => {
-                let times = goals::FASTER_THAN_YARDSTICK;
-                (format!("{times}× yardstick"), Some(times * ours <= time))
-            }
-            (None, Some(time)) => ("fidget".to_owned(), Some(ours <= time)),
-            (None, None) => (number(None), None),
-        };
+        let floor = goals::yardstick(name).map_or(1.0, |floor| floor.faster());
+        let goal = goals::membership(name).map(|goal| goal.faster());
         table.row(vec![
             name.to_owned(),
             number(Some(ours)),
             number(fidget),
             ratio(fidget, ours),
-            number(yardstick),
-            ratio(yardstick, ours),
-            number(goal),
-            floor,
-            reached(goal.map(|goal| ours <= goal), met),
+            fidget.map_or_else(|| number(None), |_| ratio(Some(floor), 1.0)),
+            ratio(goal, 1.0),
+            reached(
+                goal.zip(fidget).map(|(goal, time)| time >= goal * ours),
+                fidget.map(|time| time >= floor * ours),
+            ),
         ]);
     }
     Ok(table)
@@ -371,8 +363,8 @@ pub fn volume(run: &Run) -> Result<Table> {
             "Manifold, ms",
             "its last measurement",
             "ratio",
-            "goal, ms",
             "floor",
+            "goal",
             "reached",
         ],
     );
@@ -424,9 +416,9 @@ pub fn volume(run: &Run) -> Result<Table> {
             number(theirs),
             last.unwrap_or_else(|| number(None)),
             ratio(theirs, whole),
-            number(Some(goal)),
             floor.map_or_else(|| number(None), |floor| format!("{floor}× Manifold")),
-            reached(Some(ours <= goal), met),
+            ratio(Some(goal.faster()), 1.0),
+            reached(theirs.map(|time| time >= goal.faster() * whole), met),
         ]);
     }
     Ok(table)
