@@ -110,3 +110,31 @@ fn the_first_hit_of_rays_at_features_of_meshes_is_the_first_end_of_all_spans() {
         }
     }
 }
+
+/// Meshes whose faces are nearer to one another than numbers of rays from afar.
+#[test]
+fn the_first_hit_of_rays_from_afar_at_plates_is_the_first_end_of_all_spans() {
+    let cube = meshes::grid_box(-DVec3::ONE, DVec3::ONE, 2);
+    let mut dice = Dice::new(9);
+    let mut merged = 0;
+    for i in 0..60 {
+        let gap = dice.within(1e-6, 4e-6);
+        let solid = || Solid::mesh(cube.clone());
+        let behind = |gap: f64| solid().translated(gap * DVec3::X);
+        let scene = scene(&match i % 3 {
+            0 => solid() - behind(gap),
+            1 => solid() + behind(gap) - behind(2.0 * gap),
+            _ => (solid() - behind(gap)) + (behind(2.0 * gap) - behind(3.0 * gap)),
+        });
+        let mut tracer = scene.tracer();
+        for _ in 0..200 {
+            let far = 10_f64.powf(dice.within(9.0, 11.0));
+            let [y, z] = [dice.within(-0.9, 0.9), dice.within(-0.9, 0.9)];
+            let ray = Ray::new(dvec3(-far, y, z), DVec3::X);
+            let first = first_of_all(&mut tracer, &ray);
+            merged += usize::from(tracer.spans(&ray).is_empty());
+            assert_eq!(tracer.first_hit(&ray), first, "{ray:?}");
+        }
+    }
+    assert!(merged > 100, "only {merged} rays have lost a plate");
+}

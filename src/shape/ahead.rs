@@ -40,11 +40,14 @@ impl<'a> Ahead<'a> {
         self.stops && is_ahead && (self.matters.is_empty() || matters())
     }
 
-    /// Whether none of what is wanted is between two places.
-    fn is_beside(&self, [near, far]: [f64; 2]) -> bool {
-        /// A line is about as long as the scene is large.
+    /// Whether none of what is wanted is between two places: what is beyond the horizon has
+    /// to be beyond it on the ray, too.
+    fn is_beside(&self, line: &Line, [near, far]: [f64; 2]) -> bool {
+        /// More than rounding: a line is about as long as the scene is large.
         const ROOM: f64 = 1e-6;
-        far < self.start.max(self.known) - ROOM || near > self.horizon + ROOM
+        let from = near - ROOM;
+        far < self.start.max(self.known) - ROOM
+            || (from > self.horizon && line.on_ray(from) > line.on_ray(self.horizon))
     }
 }
 
@@ -63,7 +66,7 @@ impl Polyhedron {
         let slabs = Slabs::new(origin, dir, &faces.bounds());
         let [near, far] = slabs.range(&faces.bounds());
         let is_met = near <= far;
-        if !is_met || ahead.is_beside([near, far]) {
+        if !is_met || ahead.is_beside(line, [near, far]) {
             return;
         }
         let shear = Shear::new(*scale, origin, dir, &self.to_local.linear);

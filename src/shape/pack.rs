@@ -217,13 +217,15 @@ impl View {
         Self { across, depth, is_parallel: nearest.is_none(), room }
     }
 
-    /// Whether places have room in single precision.
+    /// Whether places have room in single precision: the functions are neither too large for
+    /// it, nor so small that it rounds them to fewer digits.
     pub(crate) fn has_room(&self) -> bool {
-        const MOST: f64 = 1e30;
+        const LEAST: f32 = 1e-30;
+        const MOST: f32 = 1e30;
         let all = [self.across[0], self.across[1], self.depth];
-        all.iter().all(|function| {
-            let weights = function.weights.iter().all(|&w| f64::from(w).abs() < MOST);
-            weights && f64::from(function.constant).abs() < MOST && function.error < MOST
+        all.iter().all(|Linear { weights: [x, y, z], constant, error, .. }| {
+            let size = x.abs() + y.abs() + z.abs() + constant.abs();
+            (LEAST..MOST).contains(&size) && *error < f64::from(MOST)
         })
     }
 

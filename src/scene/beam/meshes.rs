@@ -43,11 +43,21 @@ impl Sightings {
         self.used = 0;
     }
 
-    /// Which of the meshes that the tile sees a leaf is.
-    fn number_of(&mut self, part: &Part<'_>, leaf: u32, mesh: &Polyhedron) -> usize {
+    /// Which of the meshes that the tile sees a leaf is; nothing if that are too many already.
+    fn number_of(
+        &mut self,
+        part: &Part<'_>,
+        leaf: u32,
+        mesh: &Polyhedron,
+    ) -> Option<usize> {
+        /// Where there are more, each is met by a few rays, which do better alone.
+        const MOST: usize = 64;
         let Self { grid, facing, used, .. } = self;
         if let Some(k) = facing[..*used].iter().position(|&(other, _)| other == leaf) {
-            return k;
+            return Some(k);
+        }
+        if *used == MOST {
+            return None;
         }
         let grid = grid.get_or_insert_with(|| Grid::new(part.tile));
         if *used == facing.len() {
@@ -57,7 +67,7 @@ impl Sightings {
         *other = leaf;
         facing.see(mesh, part.tile, part.sight, grid);
         *used += 1;
-        *used - 1
+        Some(*used - 1)
     }
 }
 
@@ -72,11 +82,14 @@ impl TileTracer<'_> {
         }
         sightings.leaves.clear();
         for &candidate in leaves {
-            let number = mesh_of(scene, &candidate)
-                .map(|mesh| sightings.number_of(part, candidate.leaf, mesh));
-            if number.is_some_and(|k| !sightings.facing[k].1.is_seen()) {
-                return None;
-            }
+            let number = match mesh_of(scene, &candidate) {
+                Some(mesh) => {
+                    let k = sightings.number_of(part, candidate.leaf, mesh)?;
+                    Some(k).filter(|&k| sightings.facing[k].1.is_seen())?;
+                    Some(k)
+                }
+                None => None,
+            };
             sightings.leaves.push((candidate, number));
         }
         if let [(candidate, Some(k))] = self.sightings.leaves[..]

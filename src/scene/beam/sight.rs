@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::fan::Fan;
 use crate::scene::Scene;
-use crate::shape::Region;
+use crate::shape::{Region, inverse_power_of_two};
 
 /// How rays of a fan pass the solid.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +20,9 @@ impl<'a> Sight<'a> {
     /// Of the rays of a fan between two places.
     pub(super) fn new(fan: &'a Fan, corners: [[f64; 2]; 2], scene: &Scene) -> Self {
         let steps = if fan.is_parallel() { &fan.origin } else { &fan.dir };
-        let across = steps.right.cross(steps.up);
+        // Its length does not matter, and the product of three lengths need not be a number.
+        let level = |v: DVec3| v * inverse_power_of_two(v.abs().max_element());
+        let across = level(steps.right).cross(level(steps.up));
         let axis = across / across.dot(fan.dir.middle);
         let bounds = &scene.bounds;
         let depths =

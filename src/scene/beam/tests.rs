@@ -11,6 +11,8 @@ use crate::fan::{Fan, Linear};
 use crate::op::Op;
 use crate::ray::{Crossing, Span};
 use crate::scene::Scene;
+use crate::solid::Solid;
+use crate::support::meshes;
 use crate::support::model::{Leaf, Model};
 use crate::support::strategies::{
     coordinate, direction, length, model, op, place, placed_leaf,
@@ -260,6 +262,48 @@ proptest! {
         let (scene, step) = (compiled(&model), [0.1, 0.1]);
         assert_same_hits(&scene, &fan, step, [32, 9]);
         assert_same_spans(&scene, &fan, step, [16, 9]);
+    }
+}
+
+/// Solids of every size that a scene can have, and farther away than they are large.
+#[test]
+fn rays_to_solids_of_any_size_hit_the_same() {
+    for exponent in (-132..=132).step_by(4).chain([-46, -45, -44, -43, -42, -41, -38]) {
+        let size = 10_f64.powi(exponent);
+        for (away, parallel) in [(0.0, true), (0.0, false), (1e3, true), (1e6, false)] {
+            let at = size * away * DVec3::new(1.0, -0.7, 0.3);
+            let mesh = Solid::mesh(meshes::icosphere(2)).scaled(DVec3::splat(size));
+            let ball = mesh - Solid::ball(0.3 * size).translated(-0.8 * size * DVec3::Z);
+            let cut = Solid::cuboid(DVec3::splat(size)).translated(0.8 * size * DVec3::X);
+            let scene = Scene::compile(&(ball - cut).translated(at)).expect("a solid");
+            let (right, up) = (size * DVec3::X, size * DVec3::Y);
+            let (middle, forward) = (at - 4.0 * size * DVec3::Z, size * DVec3::Z);
+            let (fan, step) = if parallel {
+                let origin = Linear { middle, right, up };
+                (Fan { origin, dir: Linear::constant(forward) }, 0.0701)
+            } else {
+                let dir = Linear { middle: forward, right, up };
+                (Fan { origin: Linear::constant(middle), dir }, 0.0179)
+            };
+            assert_same_hits(&scene, &fan, [step, step], [32, 32]);
+        }
+    }
+}
+
+/// More meshes than a tile keeps.
+#[test]
+fn rays_to_many_meshes_hit_the_same() {
+    let mesh = Solid::mesh(meshes::icosphere(1)).scaled(DVec3::splat(0.11));
+    let places = (0..400).map(|i| {
+        DVec3::new(f64::from(i % 20), f64::from(i / 20), f64::from(i % 3)) * 0.2
+    });
+    let all = places.map(|at| mesh.clone().translated(at));
+    let scene = Scene::compile(&Solid::boolean(Op::Union, all)).expect("a solid");
+    let middle = DVec3::new(1.9, 1.9, -3.0);
+    let origin = Linear { middle, right: DVec3::X, up: DVec3::Y };
+    let fan = Fan { origin, dir: Linear::constant(DVec3::Z) };
+    for step in [0.2, 0.13, 0.01] {
+        assert_same_hits(&scene, &fan, [step, step], [32, 32]);
     }
 }
 

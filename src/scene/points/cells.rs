@@ -51,6 +51,9 @@ const STEPS_OF_TRIANGLE: usize = 2;
 /// and in addition. Where more would be, cells are larger.
 const MORE_STEPS: usize = 1 << 17;
 
+/// What cells are to meshes is kept for so many meshes around each cell, on average.
+const RASTERS: usize = 8;
+
 /// To make a plan, walking past so many nodes counts as a face.
 const NODES: usize = 64;
 
@@ -89,7 +92,7 @@ impl Cells {
             .step_by(3)
             .find_map(|halvings| {
                 let grid = Grid::new(&room, halvings);
-                Division::new(scene, &faces, grid).all(most)
+                Division::new(scene, &faces, grid)?.all(most)
             })
             .map(|(grid, places, plans)| {
                 let equations = faces.equations;
@@ -223,15 +226,22 @@ enum Look {
 }
 
 impl<'a> Division<'a> {
-    fn new(scene: &'a Scene, faces: &'a Faces, grid: Grid) -> Self {
+    /// Nothing if meshes lie over one another so much that there would be no room for what
+    /// cells are to all of them.
+    fn new(scene: &'a Scene, faces: &'a Faces, grid: Grid) -> Option<Self> {
         let meshes = (0..).zip(&scene.shapes).zip(&scene.clipped);
-        let rasters = meshes
+        let meshes = meshes
             .filter(|(_, bounds)| !bounds.is_empty())
-            .filter_map(|((leaf, shape), _)| Some((leaf, mesh(shape)?)))
-            .map(|(leaf, mesh)| (leaf, Raster::new(scene, &grid, leaf, mesh)))
-            .collect();
+            .filter_map(|((leaf, shape), _)| Some((leaf, mesh(shape)?)));
+        let mut room = RASTERS * grid.len();
+        let mut rasters = Vec::new();
+        for (leaf, mesh) in meshes {
+            let raster = Raster::new(scene, &grid, leaf, mesh);
+            room = room.checked_sub(raster.len())?;
+            rasters.push((leaf, raster));
+        }
         let places = vec![ALONE; grid.len() + 1];
-        Self {
+        Some(Self {
             scene,
             faces,
             grid,
@@ -242,7 +252,7 @@ impl<'a> Division<'a> {
             candidates: Vec::new(),
             within: Vec::new(),
             steps: 0,
-        }
+        })
     }
 
     /// Divides everything; nothing if plans have more faces than this.

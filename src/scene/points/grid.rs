@@ -51,15 +51,18 @@ pub(super) fn last_bits(sum: f64) -> usize {
 }
 
 impl Grid {
-    /// Divides a box this often, or less if an axis is used up.
+    /// Divides a box this often, or less if all axes are used up.
     pub(super) fn new(room: &Room, halvings: usize) -> Self {
         let bounds = room.bounds;
         let (mut size, mut axes, mut count) = (bounds.size(), Vec::new(), [0; 3]);
         while axes.len() < halvings {
-            let axis = size.max_position();
-            if count[axis] == MOST_HALVINGS || size[axis] <= 0.0 {
+            let has_room =
+                |&axis: &usize| count[axis] < MOST_HALVINGS && size[axis] > 0.0;
+            let axes_left = (0..3).rev().filter(has_room);
+            let Some(axis) = axes_left.max_by(|&a, &b| size[a].total_cmp(&size[b]))
+            else {
                 break;
-            }
+            };
             size[axis] *= 0.5;
             count[axis] += 1;
             axes.push(axis);

@@ -117,11 +117,11 @@ impl Scene {
 
     /// The cells of the scene if they are there, or so many points are worth making them.
     fn cells_for(&self, points: usize) -> Option<&Cells> {
-        if cells::is_small(self) || points >= cells::price(self) {
-            self.cells.get_or_init(|| Cells::new(self)).as_ref()
-        } else {
-            self.cells.get()?.as_ref()
+        if let Some(cells) = self.cells.get() {
+            return cells.as_ref();
         }
+        let is_worth_it = cells::is_small(self) || points >= cells::price(self);
+        is_worth_it.then(|| self.cells.get_or_init(|| Cells::new(self)).as_ref())?
     }
 }
 

@@ -53,6 +53,11 @@ impl Raster {
         raster
     }
 
+    /// How many cells it takes.
+    pub(super) fn len(&self) -> usize {
+        self.cells.len()
+    }
+
     /// Where the cells of a row begin.
     fn row(&self, y: u32, z: u32) -> usize {
         let [x_places, y_places, z_places] = &self.places;
