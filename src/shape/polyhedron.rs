@@ -502,13 +502,11 @@ pub(super) fn crossing(corners: [DVec3; 3], shear: &Shear<'_>) -> Option<(f64, S
 
 /// Twice the signed area of the triangle of the line, `a` and `b`; its sign is exact.
 ///
-/// Two products and their difference are off by less than `3 u (|p| + |q|)`, so beyond that
-/// the sign is certain (J. R. Shewchuk, as above, the bound of stage A in §4.1; here all three
-/// are given numbers and no coordinate is a difference, so it is even `2 u`).
+/// Rounding never puts two products in the other order, so the sign is certain where they have
+/// not become the same number. Only then are all digits needed (J. R. Shewchuk, as above).
 fn turn(a: DVec2, b: DVec2) -> f64 {
-    let (p, q) = (a.x * b.y, a.y * b.x);
-    let turn = p - q;
-    if turn.abs() > 4.0 * U * (p.abs() + q.abs()) { turn } else { exact_turn(a, b) }
+    let turn = a.x * b.y - a.y * b.x;
+    if turn == 0.0 { exact_turn(a, b) } else { turn }
 }
 
 #[cold]

@@ -2,9 +2,8 @@
 //!
 //! What is computed for one line in [`Polyhedron`](super::Polyhedron) is computed here by the
 //! same operations in the same order, so that the numbers are the same. Only the sign of an
-//! area that is about zero is left to that: then there is doubt.
+//! area that rounding has made zero is left to that: then there is doubt.
 
-use super::doubt::U;
 use super::polyhedron::LEAST;
 use crate::lanes::{Lanes, Vec3};
 
@@ -115,13 +114,12 @@ impl<L: Lanes> Sheared<L> {
     }
 }
 
-/// Which of the triangles of lines and two points certainly turn left, and which right.
+/// Which of the triangles of lines and two points certainly turn left, and which right: those
+/// whose areas rounding has not made zero.
 #[inline(always)]
 fn turn<L: Lanes>(a: Corner<L>, b: Corner<L>) -> (L::Mask, L::Mask) {
     let (p, q) = (a.x * b.y, a.y * b.x);
-    let turn = p - q;
-    let room = p.same(4.0 * U) * (p.abs() + q.abs());
-    (room.less(turn), room.less(-turn))
+    (q.less(p), p.less(q))
 }
 
 /// The one that comes first on the first axis, and the other.
