@@ -116,7 +116,8 @@ impl<S: Eight> Numbers<S> {
 
     #[inline(always)]
     pub(crate) fn abs(self) -> Self {
-        Self(self.0, self.0.abs_f32s(self.1))
+        let all_but_sign = self.0.splat_f32s(f32::from_bits(0x7fff_ffff));
+        Self(self.0, self.0.and_f32s(self.1, all_but_sign))
     }
 
     #[inline(always)]

@@ -12,7 +12,7 @@ mod visit;
 use glam::DVec3;
 
 use crate::aabb::Aabb;
-use crate::eight::{EIGHT, Eight};
+use crate::eight::{EIGHT, Eight, WithEight, with_eight};
 use crate::lanes::Lanes;
 use build::{Around, Boxed};
 pub(crate) use probe::Probe;
@@ -125,7 +125,8 @@ impl Bvh {
                 }
             }
         } else if slabs.cross(&self.bounds) {
-            self.visited(&self.probe(slabs), Each(visit));
+            let probe = &self.probe(slabs);
+            with_eight(All { bvh: self, probe, each: Each(visit) });
         }
     }
 
@@ -140,12 +141,13 @@ impl Bvh {
         let bounds = Aabb::new(self.bounds.min - breadth, self.bounds.max + breadth);
         let [near, far] = slabs.range(&bounds);
         if near <= far && near <= 1.0 && far >= -1.0 {
-            let probe = Probe::new(&self.unit, slabs);
-            self.visited(&probe.widened(&self.unit, breadth), Each(visit));
+            let probe = &self.probe(slabs).widened(&self.unit, breadth);
+            with_eight(All { bvh: self, probe, each: Each(visit) });
         }
     }
 
     /// The line in the frame of the tree.
+    #[inline(always)]
     pub(crate) fn probe(&self, slabs: &Slabs) -> Probe {
         Probe::new(&self.unit, slabs)
     }
@@ -186,6 +188,22 @@ impl Bvh {
                 }
             }
         }
+    }
+}
+
+/// Shows ends to a function.
+struct All<'a, F> {
+    bvh: &'a Bvh,
+    probe: &'a Probe,
+    each: Each<F>,
+}
+
+impl<F: FnMut(u32)> WithEight for All<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_eight<S: Eight>(mut self, simd: S) {
+        self.bvh.visited(simd, self.probe, &mut self.each);
     }
 }
 
@@ -248,6 +266,7 @@ impl Unit {
     }
 
     /// A point in this frame.
+    #[inline(always)]
     pub(crate) fn point(&self, p: DVec3) -> DVec3 {
         (p - self.center) * self.scale
     }
@@ -274,6 +293,7 @@ impl Unit {
 
 /// The next number of single precision that is not larger.
 #[expect(clippy::cast_possible_truncation, reason = "that is what it is for")]
+#[inline(always)]
 fn rounded_down(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) > x { nearest.next_down() } else { nearest }
@@ -300,18 +320,19 @@ impl Slabs {
     /// the test itself (three operations a plane, relative error 3 u of a difference of
     /// coordinates) and of the shear by which triangles are tested (five operations on
     /// coordinates of this size), so a box is never missed that holds a crossing.
+    #[inline(always)]
     pub(crate) fn new(origin: DVec3, dir: DVec3, bounds: &Aabb) -> Self {
         let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
         let pad = DVec3::splat(8.0 * f64::EPSILON * (reach + origin.abs().max_element()));
         // A line parallel to a plane has a quotient too large, not an infinite one: the
         // difference of coordinates may be zero, and 0 · ∞ is no number.
-        let inverse = DVec3::from_array(
-            dir.to_array().map(|d| (1.0 / d).clamp(-f64::MAX, f64::MAX)),
-        );
+        let inverse = |d: f64| (1.0 / d).clamp(-f64::MAX, f64::MAX);
+        let inverse = DVec3::new(inverse(dir.x), inverse(dir.y), inverse(dir.z));
         Self { origin, dir, inverse, pad }
     }
 
     /// The range of `t` in which the line is in the box, widened as above.
+    #[inline(always)]
     pub(crate) fn range(&self, b: &Aabb) -> [f64; 2] {
         let low = (b.min - self.pad - self.origin) * self.inverse;
         let high = (b.max + self.pad - self.origin) * self.inverse;
@@ -319,6 +340,7 @@ impl Slabs {
     }
 
     /// Whether the line crosses a box.
+    #[inline(always)]
     pub(crate) fn cross(&self, b: &Aabb) -> bool {
         let [near, far] = self.range(b);
         near <= far

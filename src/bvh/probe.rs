@@ -38,6 +38,7 @@ impl Probe {
     /// With `e = 2⁻²⁴` and coordinates of at most 1 for boxes and 1.8 for the origin, a plane
     /// is off by at most `10.3 e`, and by 64 u (|box| + |origin|) in double precision: half
     /// of it for the nearest point, for the rest see [`Slabs::new`].
+    #[inline(always)]
     pub(super) fn new(unit: &Unit, slabs: &Slabs) -> Self {
         const SINGLE: f64 = 16.0 / 16_777_216.0;
         let rounding = 4.0 * slabs.pad.x * unit.scale;
@@ -82,6 +83,7 @@ impl Probe {
     }
 
     /// Leaves out what comes before a place of the line that was given.
+    #[inline(always)]
     pub(crate) fn starting(mut self, t: f64) -> Self {
         if let Some([place, room]) = self.place(t) {
             self.part[0] = rounded_down(place - room);
@@ -91,6 +93,7 @@ impl Probe {
 
     /// The limit behind which no box holds a crossing at a place of the line that was given,
     /// and how much farther than that all crossings are in boxes behind the limit.
+    #[inline(always)]
     pub(crate) fn limit(&self, t: f64) -> Option<(f32, f64)> {
         let [place, room] = self.place(t)?;
         Some((-rounded_down(-place - room), 0.5 * room / self.along))
@@ -99,6 +102,7 @@ impl Probe {
     /// A place of the line that was given, and more than it can differ from where boxes
     /// around a crossing there begin or end: twice what puts planes apart, and some for rounding
     /// where the middle is far away. Nothing if there is no telling.
+    #[inline(always)]
     fn place(&self, t: f64) -> Option<[f64; 2]> {
         let place = self.middle + self.along * t;
         let room = 4.0 * (self.pad + 1e-6 * self.middle.abs());
@@ -109,6 +113,7 @@ impl Probe {
 
 impl OnAxis {
     #[expect(clippy::cast_possible_truncation, reason = "there is room for rounding")]
+    #[inline(always)]
     fn new(origin: f64, dir: f64, pad: f64) -> Self {
         // A line parallel to a plane has a quotient too large, not an infinite one: the
         // difference of coordinates may be zero, and 0 · ∞ is no number.

@@ -2,31 +2,47 @@
 
 use super::probe::{OnAxis, Probe};
 use super::{Bvh, END, Node, Visitor};
-use crate::eight::{EIGHT, Eight, Numbers, WithEight, with_eight};
+use crate::eight::{EIGHT, Eight, Numbers};
 
 impl Bvh {
     /// Shows a visitor the ends whose boxes the line crosses.
-    pub(crate) fn visited<V: Visitor>(&self, probe: &Probe, visitor: V) {
+    #[inline(always)]
+    pub(crate) fn visited<S: Eight, V: Visitor>(
+        &self,
+        simd: S,
+        probe: &Probe,
+        visitor: &mut V,
+    ) {
         let room = self.room();
-        let mut later = [0; 128];
-        if room <= later.len() {
-            with_eight(Traversal { bvh: self, probe, visitor, later: &mut later });
+        let mut few = [0; 128];
+        let mut many = Vec::new();
+        let later = if room <= few.len() {
+            &mut few[..]
         } else {
-            let later = &mut vec![0; room];
-            with_eight(Traversal { bvh: self, probe, visitor, later });
-        }
+            many.resize(room, 0);
+            &mut many
+        };
+        self.visit(simd, probe, visitor, later);
     }
 
     /// The same, the nearest box of each node first, up to the visitor's limit.
-    pub(crate) fn visited_in_order<V: Visitor>(&self, probe: &Probe, visitor: &mut V) {
+    #[inline(always)]
+    pub(crate) fn visited_in_order<S: Eight, V: Visitor>(
+        &self,
+        simd: S,
+        probe: &Probe,
+        visitor: &mut V,
+    ) {
         let room = self.room();
-        let mut later = [(0.0, 0); 64];
-        if room <= later.len() {
-            with_eight(InOrder { bvh: self, probe, visitor, later: &mut later });
+        let mut few = [(0.0, 0); 64];
+        let mut many = Vec::new();
+        let later = if room <= few.len() {
+            &mut few[..]
         } else {
-            let later = &mut vec![(0.0, 0); room];
-            with_eight(InOrder { bvh: self, probe, visitor, later });
-        }
+            many.resize(room, (0.0, 0));
+            &mut many
+        };
+        self.visit_in_order(simd, probe, visitor, later);
     }
 
     /// How many nodes and ends can be waiting: all children but one on each level, and all
@@ -34,21 +50,15 @@ impl Bvh {
     fn room(&self) -> usize {
         (EIGHT - 1) * self.depth + EIGHT
     }
-}
-
-struct Traversal<'a, V> {
-    bvh: &'a Bvh,
-    probe: &'a Probe,
-    visitor: V,
-    later: &'a mut [u32],
-}
-
-impl<V: Visitor> WithEight for Traversal<'_, V> {
-    type Output = ();
 
     #[inline(always)]
-    fn with_eight<S: Eight>(self, simd: S) {
-        let Self { bvh, probe, mut visitor, later } = self;
+    fn visit<S: Eight, V: Visitor>(
+        &self,
+        simd: S,
+        probe: &Probe,
+        visitor: &mut V,
+        later: &mut [u32],
+    ) {
         let across = Across::new(simd, probe);
         let [from, to] = probe.part;
         let (from, to) = (Numbers::same(simd, from), Numbers::same(simd, to));
@@ -57,7 +67,7 @@ impl<V: Visitor> WithEight for Traversal<'_, V> {
             if at & END != 0 {
                 visitor.end(simd, at & !END);
             } else {
-                let node = &bvh.nodes[at as usize];
+                let node = &self.nodes[at as usize];
                 let [near, far] = across.ranges(simd, node);
                 // What is not sorted out is crossed.
                 let mut crossed = !far.min(to).less(near.max(from)) & 0xff;
@@ -73,21 +83,15 @@ impl<V: Visitor> WithEight for Traversal<'_, V> {
             at = later[waiting];
         }
     }
-}
-
-struct InOrder<'a, V> {
-    bvh: &'a Bvh,
-    probe: &'a Probe,
-    visitor: &'a mut V,
-    later: &'a mut [(f32, u32)],
-}
-
-impl<V: Visitor> WithEight for InOrder<'_, V> {
-    type Output = ();
 
     #[inline(always)]
-    fn with_eight<S: Eight>(self, simd: S) {
-        let Self { bvh, probe, visitor, later } = self;
+    fn visit_in_order<S: Eight, V: Visitor>(
+        &self,
+        simd: S,
+        probe: &Probe,
+        visitor: &mut V,
+        later: &mut [(f32, u32)],
+    ) {
         let across = Across::new(simd, probe);
         let from = Numbers::same(simd, probe.part[0]);
         let (mut waiting, mut at) = (0, 0);
@@ -95,7 +99,7 @@ impl<V: Visitor> WithEight for InOrder<'_, V> {
             if at & END != 0 {
                 visitor.end(simd, at & !END);
             } else {
-                let node = &bvh.nodes[at as usize];
+                let node = &self.nodes[at as usize];
                 let [near, far] = across.ranges(simd, node);
                 let (near, far) =
                     (near.max(from), far.min(Numbers::same(simd, visitor.limit())));

@@ -7,7 +7,7 @@ use super::pack::{Pack, Sight};
 use super::polyhedron::{Polyhedron, Shear, crossing};
 use super::{IndexedMesh, Sink};
 use crate::bvh::{Probe, Slabs, Visitor};
-use crate::eight::Eight;
+use crate::eight::{Eight, WithEight, with_eight};
 
 /// Which crossings of a line are wanted.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +34,7 @@ impl<'a> Ahead<'a> {
     }
 
     /// Whether the horizon can come to a crossing.
+    #[inline(always)]
     fn stops_at(&self, t: f64) -> bool {
         let is_ahead = t >= self.start && t < self.horizon;
         let matters = || self.matters.iter().any(|&[from, to]| from <= t && t <= to);
@@ -42,6 +43,7 @@ impl<'a> Ahead<'a> {
 
     /// Whether none of what is wanted is between two places: what is beyond the horizon has
     /// to be beyond it on the ray, too.
+    #[inline(always)]
     fn is_beside(&self, line: &Line, [near, far]: [f64; 2]) -> bool {
         /// More than rounding: a line is about as long as the scene is large.
         const ROOM: f64 = 1e-6;
@@ -61,35 +63,46 @@ impl Polyhedron {
         ahead: &mut Ahead<'_>,
         sink: &mut Sink<'_>,
     ) {
-        let Some((origin, dir)) = self.in_frame(line) else { return };
-        let IndexedMesh { faces, packs, points, scale, .. } = self.indexed();
+        with_eight(LookingAhead { mesh: self, line, ahead, sink });
+    }
+}
+
+/// A line that is to be looked for in a mesh.
+struct LookingAhead<'a, 'b, 'c> {
+    mesh: &'a Polyhedron,
+    line: &'a Line,
+    ahead: &'a mut Ahead<'c>,
+    sink: &'a mut Sink<'b>,
+}
+
+impl WithEight for LookingAhead<'_, '_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_eight<S: Eight>(self, simd: S) {
+        let Self { mesh, line, ahead, sink } = self;
+        let Some((origin, dir)) = mesh.in_frame(line) else { return };
+        let IndexedMesh { faces, packs, points, scale, .. } = mesh.indexed();
         let slabs = Slabs::new(origin, dir, &faces.bounds());
         let [near, far] = slabs.range(&faces.bounds());
         let is_met = near <= far;
         if !is_met || ahead.is_beside(line, [near, far]) {
             return;
         }
-        let shear = Shear::new(*scale, origin, dir, &self.to_local.linear);
+        let shear = Shear::new(*scale, origin, dir, &mesh.to_local.linear);
         let mut probe = faces.probe(&slabs);
         if ahead.known > near {
             probe = probe.starting(ahead.known);
         }
         let sight = Sight::new(&probe, shear.axes, shear.shift);
-        let mut search = Search {
-            packs,
-            points,
-            sight,
-            shear,
-            line,
-            probe,
-            ahead,
-            limit: f32::INFINITY,
-            sink,
-        };
+        let limit = f32::INFINITY;
+        let probe = &probe;
+        let mut search =
+            Search { packs, points, sight, shear, line, probe, ahead, limit, sink };
         if search.ahead.horizon < f64::INFINITY {
             search.stop_at(search.ahead.horizon);
         }
-        faces.visited_in_order(&probe, &mut search);
+        faces.visited_in_order(simd, probe, &mut search);
     }
 }
 
@@ -100,7 +113,7 @@ struct Search<'a, 'b, 'c> {
     sight: Sight,
     shear: Shear<'a>,
     line: &'a Line,
-    probe: Probe,
+    probe: &'a Probe,
     ahead: &'a mut Ahead<'c>,
     limit: f32,
     sink: &'a mut Sink<'b>,
@@ -123,6 +136,7 @@ impl Visitor for Search<'_, '_, '_> {
 
 impl Search<'_, '_, '_> {
     /// Looks at the faces of a pack whose bits are set.
+    #[inline(always)]
     fn look_at(&mut self, pack: u32, mut near: u32) {
         let pack = &self.packs[pack as usize];
         while near != 0 {
@@ -140,6 +154,7 @@ impl Search<'_, '_, '_> {
     }
 
     /// Brings the horizon to a place, if what is beyond the limit is farther on the ray.
+    #[inline(always)]
     fn stop_at(&mut self, t: f64) {
         if let Some((limit, room)) = self.probe.limit(t)
             && self.line.on_ray(t + room) > self.line.on_ray(t)

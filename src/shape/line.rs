@@ -46,6 +46,7 @@ impl Line {
     }
 
     /// A place on this line as a place on the ray.
+    #[inline(always)]
     pub(crate) fn on_ray(&self, t: f64) -> f64 {
         (self.offset + t) * self.scale
     }
@@ -190,6 +191,7 @@ fn coarse<L: Lanes>(x: L, width: L) -> L {
 }
 
 /// [`Lanes::inverse_power_of_two`] of one number.
+#[inline(always)]
 pub(crate) fn inverse_power_of_two(x: f64) -> f64 {
     Lanes::inverse_power_of_two(x)
 }

@@ -70,15 +70,16 @@ impl Pack {
     }
 
     /// A face and its corners, by the number of its bit.
-    #[inline]
+    #[inline(always)]
     pub(super) fn exact(&self, bit: u32, points: &[DVec3]) -> Option<(u32, [DVec3; 3])> {
         Some((self.face(bit)?, self.corners(bit, points)))
     }
 
     /// The corners of a face, by the number of its bit.
-    #[inline]
+    #[inline(always)]
     pub(super) fn corners(&self, bit: u32, points: &[DVec3]) -> [DVec3; 3] {
-        self.points[bit as usize].map(|point| points[point as usize])
+        let [a, b, c] = self.points[bit as usize];
+        [points[a as usize], points[b as usize], points[c as usize]]
     }
 
     /// A bit for each face that is not certainly passed by.
@@ -99,8 +100,8 @@ impl Pack {
         let ab = ax * by - ay * bx;
         let x = ax.abs().max(bx.abs()).max(cx.abs());
         let y = ay.abs().max(by.abs()).max(cy.abs());
-        let [room, least] = sight.room.map(|number| Numbers::same(simd, number));
-        let error = (x + y) * room + least;
+        let [room, least] = sight.room;
+        let error = (x + y) * Numbers::same(simd, room) + Numbers::same(simd, least);
         let zero = Numbers::same(simd, 0.0);
         let is_left = error.less(bc.max(ca).max(ab));
         let is_right = bc.min(ca).min(ab).less(zero - error);
@@ -361,6 +362,7 @@ impl Sight {
     /// 1, coordinates across are off by 15.2 e, and by twice what rounding in double precision
     /// has done: the sum of what each operation of [`Sight::beside`] adds.
     #[expect(clippy::cast_possible_truncation, reason = "there is room for rounding")]
+    #[inline(always)]
     pub(super) fn new(probe: &Probe, axes: [usize; 3], shift: DVec2) -> Self {
         let origin: DVec3 = probe.origin;
         let [x, y, z] = axes;

@@ -158,10 +158,12 @@ impl ToLocal {
     }
 
     /// The origin of a line.
+    #[inline(always)]
     pub(super) fn origin_of(&self, line: &Line) -> DVec3 {
         self.linear * ((line.origin - self.origin) + line.rest)
     }
 
+    #[inline(always)]
     pub(crate) fn direction(&self, world: DVec3) -> DVec3 {
         self.linear * world
     }

@@ -26,7 +26,7 @@ use super::place::{Frame, ToLocal};
 use super::{Line, Sink, Surface};
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Slabs, Visitor};
-use crate::eight::{EIGHT, Eight, with_eight};
+use crate::eight::{EIGHT, Eight, WithEight, with_eight};
 use crate::mesh::Mesh;
 use crate::ray::Sense;
 
@@ -130,16 +130,7 @@ impl Polyhedron {
 impl Polyhedron {
     /// Hands over all crossings with a line.
     pub(super) fn crossings(&self, line: &Line, sink: &mut Sink<'_>) {
-        let Some((origin, dir)) = self.in_frame(line) else { return };
-        let IndexedMesh { faces, packs, points, scale, .. } = &*self.mesh;
-        let slabs = Slabs::new(origin, dir, &faces.bounds());
-        if !slabs.cross(&faces.bounds()) {
-            return;
-        }
-        let shear = Shear::new(*scale, origin, dir, &self.to_local.linear);
-        let probe = faces.probe(&slabs);
-        let sight = Sight::new(&probe, shear.axes, shear.shift);
-        faces.visited(&probe, Crossed { packs, points, sight, shear, sink });
+        with_eight(Through { mesh: self, line, sink });
     }
 }
 
@@ -242,11 +233,39 @@ impl Polyhedron {
 
     /// The origin and the direction of a line in the frame of the mesh; nothing of a mesh too
     /// small to be told from a point of the scene.
+    #[inline(always)]
     pub(super) fn in_frame(&self, line: &Line) -> Option<(DVec3, DVec3)> {
         let origin = self.to_local.origin_of(line);
         let dir = self.to_local.direction(line.dir);
         (origin.is_finite() && dir.is_finite() && dir != DVec3::ZERO)
             .then_some((origin, dir))
+    }
+}
+
+/// A line that is to be looked for in a mesh.
+struct Through<'a, 'b> {
+    mesh: &'a Polyhedron,
+    line: &'a Line,
+    sink: &'a mut Sink<'b>,
+}
+
+impl WithEight for Through<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_eight<S: Eight>(self, simd: S) {
+        let Self { mesh, line, sink } = self;
+        let Some((origin, dir)) = mesh.in_frame(line) else { return };
+        let IndexedMesh { faces, packs, points, scale, .. } = &*mesh.mesh;
+        let slabs = Slabs::new(origin, dir, &faces.bounds());
+        if !slabs.cross(&faces.bounds()) {
+            return;
+        }
+        let shear = Shear::new(*scale, origin, dir, &mesh.to_local.linear);
+        let probe = faces.probe(&slabs);
+        let sight = Sight::new(&probe, shear.axes, shear.shift);
+        let mut crossed = Crossed { packs, points, sight, shear, sink };
+        faces.visited(simd, &probe, &mut crossed);
     }
 }
 
@@ -271,6 +290,7 @@ impl Visitor for Crossed<'_, '_> {
 
 impl Crossed<'_, '_> {
     /// Looks at the faces of a pack whose bits are set.
+    #[inline(always)]
     fn look_at(&mut self, pack: u32, mut near: u32) {
         let pack = &self.packs[pack as usize];
         while near != 0 {
@@ -428,6 +448,7 @@ struct Corner {
 
 impl<'a> Shear<'a> {
     /// The scale is that of the mesh.
+    #[inline(always)]
     pub(super) fn new(scale: f64, origin: DVec3, dir: DVec3, world: &'a DMat3) -> Self {
         let scale = scale.min(inverse_power_of_two(origin.abs().max_element()));
         let step = (inverse_power_of_two(dir.abs().max_element()) / scale).min(f64::MAX);
@@ -440,7 +461,7 @@ impl<'a> Shear<'a> {
     }
 
     /// Where a point is seen, and where along the third axis.
-    #[inline]
+    #[inline(always)]
     fn seen(&self, point: DVec3) -> (DVec2, f64) {
         let p = self.scale * point - self.origin;
         let (across, along) = match self.axes[2] {
@@ -464,6 +485,7 @@ impl<'a> Shear<'a> {
 }
 
 /// A vector times the power of two that makes it about 1 long.
+#[inline(always)]
 fn level(v: DVec3) -> DVec3 {
     v * inverse_power_of_two(v.abs().max_element())
 }
@@ -473,6 +495,7 @@ pub(super) const LEAST: f64 = 1e-144;
 
 /// Zero for coordinates whose products have no room for all their digits. It deforms the
 /// mesh like any other rounding.
+#[inline(always)]
 fn flushed(p: DVec2) -> DVec2 {
     p.map(|x| if x.abs() < LEAST { 0.0 } else { x })
 }
@@ -481,6 +504,7 @@ fn flushed(p: DVec2) -> DVec2 {
 ///
 /// A triangle that is counter-clockwise seen from where the third axis goes faces away from
 /// where it comes from, so a line along it comes out there.
+#[inline(always)]
 pub(super) fn crossing(corners: [DVec3; 3], shear: &Shear<'_>) -> Option<(f64, Sense)> {
     let [a, b, c] = corners;
     let ((a, a_z), (b, b_z), (c, c_z)) = (shear.seen(a), shear.seen(b), shear.seen(c));
@@ -504,6 +528,7 @@ pub(super) fn crossing(corners: [DVec3; 3], shear: &Shear<'_>) -> Option<(f64, S
 ///
 /// Rounding never puts two products in the other order, so the sign is certain where they have
 /// not become the same number. Only then are all digits needed (J. R. Shewchuk, as above).
+#[inline(always)]
 fn turn(a: DVec2, b: DVec2) -> f64 {
     let turn = a.x * b.y - a.y * b.x;
     if turn == 0.0 { exact_turn(a, b) } else { turn }
@@ -522,6 +547,7 @@ impl Shear<'_> {
     /// A move by m adds m × (a − b) to the area. Where the area is zero, a and b are in one
     /// line with the origin, so a − b is a multiple of either: the sign of the product with
     /// that one is exact, that of the product with a rounded difference would not be.
+    #[inline(always)]
     fn is_left_turn(&self, turn_of_edge: f64, a: DVec2, b: DVec2) -> Option<bool> {
         if turn_of_edge == 0.0 {
             return self.is_left_turn_when_moved(a, b);
@@ -547,6 +573,7 @@ impl Shear<'_> {
 ///
 /// On an edge or a corner the answer comes from that edge or corner alone, so that all
 /// faces around it give the same bits. It does not depend on which corner a face lists first.
+#[inline(always)]
 fn along([a, b, c]: [Corner; 3], areas: [f64; 3]) -> f64 {
     match areas.map(|x| x == 0.0) {
         [true, false, false] => along_edge(b, c),
@@ -573,6 +600,7 @@ fn along_edge(a: Corner, b: Corner) -> f64 {
 /// A triangle that is almost parallel to the line is seen as a sliver whose areas are
 /// nothing but rounding. Still both edges are passed where they should be, so an answer
 /// between them is near the triangle.
+#[inline(always)]
 fn along_face(mut corners: [Corner; 3]) -> f64 {
     let [a, b, c] = corners.map(|corner| corner.beside);
     let axis = (a.max(b).max(c) - a.min(b).min(c)).max_position();
@@ -593,7 +621,7 @@ fn along_face(mut corners: [Corner; 3]) -> f64 {
 }
 
 /// The place between two where a coordinate is zero, or one of them where it never is.
-#[inline]
+#[inline(always)]
 fn passed(from: Corner, to: Corner, axis: usize) -> Corner {
     let part = -from.beside[axis] / (to.beside[axis] - from.beside[axis]);
     let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
