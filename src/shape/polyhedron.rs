@@ -574,7 +574,17 @@ impl Shear<'_> {
 /// On an edge or a corner the answer comes from that edge or corner alone, so that all
 /// faces around it give the same bits. It does not depend on which corner a face lists first.
 #[inline(always)]
-fn along([a, b, c]: [Corner; 3], areas: [f64; 3]) -> f64 {
+fn along(corners: [Corner; 3], areas: [f64; 3]) -> f64 {
+    let [a, b, c] = areas;
+    if a != 0.0 && b != 0.0 && c != 0.0 {
+        along_face(corners)
+    } else {
+        along_border(corners, areas)
+    }
+}
+
+#[cold]
+fn along_border([a, b, c]: [Corner; 3], areas: [f64; 3]) -> f64 {
     match areas.map(|x| x == 0.0) {
         [true, false, false] => along_edge(b, c),
         [false, true, false] => along_edge(c, a),
@@ -588,10 +598,10 @@ fn along([a, b, c]: [Corner; 3], areas: [f64; 3]) -> f64 {
 
 /// Where the line passes an edge that it meets exactly, the same whichever end is first.
 fn along_edge(a: Corner, b: Corner) -> f64 {
-    let key = |c: &Corner| (c.beside.x, c.beside.y, c.along);
-    let (a, b) = if key(&a) <= key(&b) { (a, b) } else { (b, a) };
-    let axis = (b.beside - a.beside).abs().max_position();
-    passed(a, b, axis).along
+    let (a, b) = if b.is_before(&a) { (b, a) } else { (a, b) };
+    let is_wide = (b.beside - a.beside).abs().max_position() == 0;
+    let [_, along] = passed(a.facing(is_wide), b.facing(is_wide));
+    along
 }
 
 /// Where the line passes the inside of a triangle: between the two edges that pass it in
@@ -601,38 +611,67 @@ fn along_edge(a: Corner, b: Corner) -> f64 {
 /// nothing but rounding. Still both edges are passed where they should be, so an answer
 /// between them is near the triangle.
 #[inline(always)]
-fn along_face(mut corners: [Corner; 3]) -> f64 {
-    let [a, b, c] = corners.map(|corner| corner.beside);
-    let axis = (a.max(b).max(c) - a.min(b).min(c)).max_position();
-    let key = |c: &Corner| (c.beside[axis], c.beside[1 - axis], c.along);
-    for (i, k) in [(0, 1), (1, 2), (0, 1)] {
-        if key(&corners[k]) < key(&corners[i]) {
-            corners.swap(i, k);
-        }
-    }
-    let [low, middle, high] = corners;
-    let one = passed(low, high, axis);
-    let other = if middle.beside[axis] > 0.0 {
-        passed(low, middle, axis)
-    } else {
-        passed(middle, high, axis)
-    };
-    passed(one, other, 1 - axis).along
+fn along_face([a, b, c]: [Corner; 3]) -> f64 {
+    let most = a.beside.max(b.beside).max(c.beside);
+    let least = a.beside.min(b.beside).min(c.beside);
+    let is_wide = (most - least).max_position() == 0;
+    let (a, b) = sorted(a.facing(is_wide), b.facing(is_wide));
+    let (b, high) = sorted(b, c.facing(is_wide));
+    let (low, middle) = sorted(a, b);
+    let [y, along] = passed(low, high);
+    let [other_y, other_along] =
+        if middle.beside.x > 0.0 { passed(low, middle) } else { passed(middle, high) };
+    between(along, other_along, part(y, other_y))
 }
 
-/// The place between two where a coordinate is zero, or one of them where it never is.
-#[inline(always)]
-fn passed(from: Corner, to: Corner, axis: usize) -> Corner {
-    let part = -from.beside[axis] / (to.beside[axis] - from.beside[axis]);
-    let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
-    let between = |a: f64, b: f64| (a + part * (b - a)).max(a.min(b)).min(a.max(b));
-    Corner {
-        beside: DVec2::new(
-            between(from.beside.x, to.beside.x),
-            between(from.beside.y, to.beside.y),
-        ),
-        along: between(from.along, to.along),
+impl Corner {
+    /// With the longer side first.
+    #[inline(always)]
+    fn facing(self, is_wide: bool) -> Self {
+        let DVec2 { x, y } = self.beside;
+        let beside = if is_wide { self.beside } else { DVec2::new(y, x) };
+        Self { beside, ..self }
     }
+
+    #[inline(always)]
+    #[expect(clippy::float_cmp, reason = "one place is one number")]
+    fn is_before(&self, other: &Self) -> bool {
+        let (a, b) = (self.beside, other.beside);
+        if a.x != b.x {
+            a.x < b.x
+        } else if a.y != b.y {
+            a.y < b.y
+        } else {
+            self.along < other.along
+        }
+    }
+}
+
+/// The one that comes first on the first axis, and the other.
+#[inline(always)]
+fn sorted(a: Corner, b: Corner) -> (Corner, Corner) {
+    if b.is_before(&a) { (b, a) } else { (a, b) }
+}
+
+/// The place between two where the first coordinate is zero, or one of them where it never is:
+/// the second coordinate, and how far along.
+#[inline(always)]
+fn passed(from: Corner, to: Corner) -> [f64; 2] {
+    let part = part(from.beside.x, to.beside.x);
+    [between(from.beside.y, to.beside.y, part), between(from.along, to.along, part)]
+}
+
+/// Which part of the way between two numbers zero is, or nothing of it.
+#[inline(always)]
+fn part(from: f64, to: f64) -> f64 {
+    let part = -from / (to - from);
+    if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// A number that is a part of the way between two.
+#[inline(always)]
+fn between(a: f64, b: f64, part: f64) -> f64 {
+    (a + part * (b - a)).max(a.min(b)).min(a.max(b))
 }
 
 #[cfg(test)]
