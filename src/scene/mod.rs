@@ -41,7 +41,7 @@ pub use weld::{NearMisses, Weld};
 /// Memory: at most 400 bytes a leaf and 110 a triangle beyond the solid it was compiled
 /// from, which can be dropped. While it is compiled, a leaf takes up to 1,000 and a triangle
 /// no more than that. Once many points were asked about, a leaf takes up to 600 bytes more
-/// and a triangle 110, and the scene 2 MiB.
+/// and a triangle 110, and the scene 2 MiB; and 20 MiB while it learns.
 #[derive(Debug)]
 pub struct Scene {
     bounds: Aabb,
