@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::line::Line;
 use super::pack::{Pack, Sight};
-use super::polyhedron::{Polyhedron, Shear, crossing};
+use super::polyhedron::Polyhedron;
+use super::shear::{Shear, crossing};
 use super::{IndexedMesh, Sink};
 use crate::bvh::{Probe, Slabs, Visitor};
 use crate::eight::{Eight, WithEight, with_eight};

@@ -24,6 +24,7 @@ mod polyhedron;
 mod primitive;
 mod quadric;
 mod region;
+mod shear;
 mod sheared;
 mod stretch;
 mod wall;

@@ -4,7 +4,7 @@
 //! same operations in the same order, so that the numbers are the same. Only the sign of an
 //! area that rounding has made zero is left to that: then there is doubt.
 
-use super::polyhedron::LEAST;
+use super::shear::LEAST;
 use crate::lanes::{Lanes, Vec3};
 
 /// Maps that take lines to the third axis.
