@@ -276,16 +276,20 @@ fn rays_to_solids_of_any_size_hit_the_same() {
             let ball = mesh - Solid::ball(0.3 * size).translated(-0.8 * size * DVec3::Z);
             let cut = Solid::cuboid(DVec3::splat(size)).translated(0.8 * size * DVec3::X);
             let scene = Scene::compile(&(ball - cut).translated(at)).expect("a solid");
-            let (right, up) = (size * DVec3::X, size * DVec3::Y);
-            let (middle, forward) = (at - 4.0 * size * DVec3::Z, size * DVec3::Z);
-            let (fan, step) = if parallel {
-                let origin = Linear { middle, right, up };
-                (Fan { origin, dir: Linear::constant(forward) }, 0.0701)
-            } else {
-                let dir = Linear { middle: forward, right, up };
-                (Fan { origin: Linear::constant(middle), dir }, 0.0179)
-            };
-            assert_same_hits(&scene, &fan, [step, step], [32, 32]);
+            let middle = at - 4.0 * size * DVec3::Z;
+            // Directions may be as long as the solid is large, or not.
+            for speed in [size, 1.0] {
+                let [x, y, z] = DVec3::AXES.map(|axis| speed * axis);
+                let (fan, step) = if parallel {
+                    let (right, up) = (size * DVec3::X, size * DVec3::Y);
+                    let origin = Linear { middle, right, up };
+                    (Fan { origin, dir: Linear::constant(z) }, 0.0701)
+                } else {
+                    let dir = Linear { middle: z, right: x, up: y };
+                    (Fan { origin: Linear::constant(middle), dir }, 0.0179)
+                };
+                assert_same_hits(&scene, &fan, [step, step], [32, 32]);
+            }
         }
     }
 }
