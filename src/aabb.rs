@@ -42,6 +42,11 @@ impl Aabb {
         Self::new(self.min - by, self.max + by)
     }
 
+    /// The largest coordinate of any of its points, whichever sign it has.
+    pub(crate) fn reach(&self) -> f64 {
+        self.min.abs().max(self.max.abs()).max_element()
+    }
+
     /// By how much two boxes are apart on the axis on which they are farthest; negative if
     /// they overlap.
     pub(crate) fn gap(&self, other: &Self) -> f64 {

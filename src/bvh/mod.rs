@@ -24,6 +24,8 @@ pub(crate) use probe::Probe;
 #[derive(Debug)]
 pub(crate) struct Bvh {
     bounds: Aabb,
+    /// The largest coordinate.
+    reach: f64,
     unit: Unit,
     nodes: Vec<Node>,
     /// The children of the root with boxes of double precision, if they are all ends.
@@ -97,7 +99,7 @@ impl Bvh {
             [root] => root.ends(&unit, &bounds),
             _ => Vec::new(),
         };
-        Self { bounds, unit, nodes, few, depth }
+        Self { bounds, reach: bounds.reach(), unit, nodes, few, depth }
     }
 
     /// Its frame.
@@ -116,7 +118,14 @@ impl Bvh {
         self.bounds
     }
 
+    /// The line through `origin` along `dir`, for the boxes of the tree.
+    #[inline(always)]
+    pub(crate) fn slabs(&self, origin: DVec3, dir: DVec3) -> Slabs {
+        Slabs::new(origin, dir, self.reach)
+    }
+
     /// Calls `visit` with each item at an end whose box the line crosses.
+    #[inline(always)]
     pub(crate) fn crossed(&self, slabs: &Slabs, mut visit: impl FnMut(u32)) {
         if !self.few.is_empty() {
             for (end, bounds) in &self.few {
@@ -172,8 +181,7 @@ impl Bvh {
         if self.bounds.is_empty() {
             return;
         }
-        let reach = self.bounds.min.abs().max(self.bounds.max.abs()).max_element();
-        let room = 2.0 * f64::EPSILON * reach;
+        let room = 2.0 * f64::EPSILON * self.reach;
         let mut later = vec![0];
         while let Some(at) = later.pop() {
             let node: &Node = &self.nodes[at as usize];
@@ -239,8 +247,7 @@ impl Node {
     /// precision makes them.
     fn ends(&self, unit: &Unit, bounds: &Aabb) -> Vec<(u32, Aabb)> {
         const SINGLE: f64 = 16.0 / 16_777_216.0;
-        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
-        let room = SINGLE / unit.scale + 2.0 * f64::EPSILON * reach;
+        let room = SINGLE / unit.scale + 2.0 * f64::EPSILON * bounds.reach();
         let around = |slot: usize| unit.aabb(&self.child(slot)).grown(room);
         let children = self.children.into_iter().enumerate();
         children
@@ -314,15 +321,14 @@ pub(crate) struct Slabs {
 }
 
 impl Slabs {
-    /// The line through `origin` along `dir`, for boxes within `bounds`.
+    /// The line through `origin` along `dir`, for boxes without coordinates larger than `reach`.
     ///
     /// Boxes are widened by 16 u (|box| + |origin|), u = 2⁻⁵³. That exceeds the rounding of
     /// the test itself (three operations a plane, relative error 3 u of a difference of
     /// coordinates) and of the shear by which triangles are tested (five operations on
     /// coordinates of this size), so a box is never missed that holds a crossing.
     #[inline(always)]
-    pub(crate) fn new(origin: DVec3, dir: DVec3, bounds: &Aabb) -> Self {
-        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+    pub(crate) fn new(origin: DVec3, dir: DVec3, reach: f64) -> Self {
         let pad = DVec3::splat(8.0 * f64::EPSILON * (reach + origin.abs().max_element()));
         // A line parallel to a plane has a quotient too large, not an infinite one: the
         // difference of coordinates may be zero, and 0 · ∞ is no number.

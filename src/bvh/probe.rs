@@ -1,5 +1,7 @@
 //! A line made ready for the boxes of a tree.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::{Slabs, Unit, rounded_down};
@@ -41,24 +43,29 @@ impl Probe {
     #[inline(always)]
     pub(super) fn new(unit: &Unit, slabs: &Slabs) -> Self {
         const SINGLE: f64 = 16.0 / 16_777_216.0;
+        /// Powers of two whose inverses and products with others are numbers.
+        const LEVELS: Range<f64> = 1e-200..1e200;
         let rounding = 4.0 * slabs.pad.x * unit.scale;
         let level = slabs.dir.abs().max_element().inverse_power_of_two();
         let dir = slabs.dir * level;
         let from = unit.point(slabs.origin);
         let middle = from.dot(dir) / dir.length_squared();
         let nearest = from - middle * dir;
-        let (origin, pad) = if rounding < 0.1 && nearest.is_finite() {
+        let is_level = LEVELS.contains(&level);
+        let (origin, pad) = if rounding < 0.1 && nearest.is_finite() && is_level {
             (nearest, SINGLE + 1.001 * rounding)
         } else {
             (DVec3::ZERO, ANYWHERE)
         };
+        let size = 1.0 / level;
+        let inverse = slabs.inverse * size;
         let axes = [
-            OnAxis::new(origin.x, dir.x, pad),
-            OnAxis::new(origin.y, dir.y, pad),
-            OnAxis::new(origin.z, dir.z, pad),
+            OnAxis::new(origin.x, inverse.x, pad),
+            OnAxis::new(origin.y, inverse.y, pad),
+            OnAxis::new(origin.z, inverse.z, pad),
         ];
         let part = [f32::NEG_INFINITY, f32::INFINITY];
-        Self { axes, origin, pad, dir, middle, along: unit.scale / level, part }
+        Self { axes, origin, pad, dir, middle, along: unit.scale * size, part }
     }
 
     /// The same for boxes as far beside the line, and not farther along it than to `t` = −1 and
@@ -71,8 +78,9 @@ impl Probe {
             self.axes = [OnAxis::new(0.0, 1.0, ANYWHERE); 3];
             return self;
         }
-        self.axes =
-            std::array::from_fn(|k| OnAxis::new(self.origin[k], self.dir[k], pad[k]));
+        self.axes = std::array::from_fn(|k| {
+            OnAxis::new(self.origin[k], 1.0 / self.dir[k], pad[k])
+        });
         let steps = self.dir.length_squared();
         let (middle, along) = (self.middle, self.along);
         let room = 1.001 * along + 4.0 * (self.pad + 1e-6 * middle.abs()) / steps.sqrt();
@@ -114,10 +122,10 @@ impl Probe {
 impl OnAxis {
     #[expect(clippy::cast_possible_truncation, reason = "there is room for rounding")]
     #[inline(always)]
-    fn new(origin: f64, dir: f64, pad: f64) -> Self {
+    fn new(origin: f64, inverse: f64, pad: f64) -> Self {
         // A line parallel to a plane has a quotient too large, not an infinite one: the
         // difference of coordinates may be zero, and 0 · ∞ is no number.
-        let inverse = (1.0 / dir).clamp(-ANYWHERE, ANYWHERE);
+        let inverse = inverse.clamp(-ANYWHERE, ANYWHERE);
         let pad = pad.copysign(inverse);
         Self {
             inverse: inverse as f32,

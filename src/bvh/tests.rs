@@ -52,7 +52,7 @@ proptest! {
             ends.push(items.to_vec());
             count(ends.len() - 1)
         });
-        let slabs = Slabs::new(scale * (from + offset + away * dir), dir, &tree.bounds());
+        let slabs = tree.slabs(scale * (from + offset + away * dir), dir);
         let mut visited = vec![0; boxes.len()];
         tree.crossed(&slabs, |end| {
             ends[end as usize].iter().for_each(|&i| visited[i as usize] += 1);

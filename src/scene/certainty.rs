@@ -41,7 +41,7 @@ impl Scene {
         const ROOM: f64 = 16.0;
         let bounds = self.hierarchy.bounds();
         let size = bounds.size().max_element();
-        let far = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let far = bounds.reach();
         let far = 2.0 * far + origin;
         let moved = self.worst_slack + 16.0 * U * self.worst_condition * far;
         ROOM * moved * (ROOM * size)

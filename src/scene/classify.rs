@@ -56,7 +56,7 @@ impl Tracer<'_> {
         }
         let ray = Ray::new(point, PROBE);
         let inside = self.probe(point);
-        let Some(line) = Line::new(&ray, &self.scene.bounds()) else {
+        let Some(line) = Line::new(&ray, &self.scene.stage) else {
             return Membership::Out;
         };
         let (near, surfaces) = self.near(point, &line);

@@ -18,7 +18,7 @@ use crate::bvh::Bvh;
 use crate::color::Color;
 use crate::mesh::Mesh;
 use crate::op::Op;
-use crate::shape::{BadParameter, Chain, Placed, Plane, Primitive, Shape, Slack};
+use crate::shape::{BadParameter, Chain, Placed, Plane, Primitive, Shape, Slack, Stage};
 use crate::shown::Shown;
 use crate::solid::{Kind, Place, Solid, Tag};
 
@@ -515,7 +515,7 @@ impl Compiler {
             slacks.map(|(slack, moved)| slack.within(&reach) + moved).collect();
         let worst = |numbers: &[f64]| numbers.iter().copied().fold(0.0, f64::max);
         Ok(Scene {
-            bounds,
+            stage: Stage::new(bounds),
             worst_slack: worst(&slacks),
             worst_condition: worst(&self.conditions),
             slacks,

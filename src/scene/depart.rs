@@ -67,7 +67,7 @@ struct Departure<'a> {
 
 impl<'a> Departure<'a> {
     fn new(tracer: &Tracer<'_>, ray: &'a Ray, start: &Crossing) -> Option<Self> {
-        let line = Line::new(ray, &tracer.scene.bounds)?;
+        let line = Line::new(ray, &tracer.scene.stage)?;
         let surface = tracer.scene.shapes[start.leaf as usize].surface();
         let spot = Spot { line: &line, t: line.on_line(0.0), slack: 0.0 };
         let local = surface.local(&spot, start.face);

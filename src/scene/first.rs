@@ -8,18 +8,37 @@
 
 use super::Scene;
 use super::trace::{Change, Tracer, in_order};
+use crate::eight::{Eight, WithEight, with_eight};
 use crate::ray::{Crossing, Ray};
 use crate::shape::{ALL, Ahead, Event, Line, Shape, Sink};
 
 /// How often meshes are asked for a few crossings before they are asked for all.
 const PATIENCE: u32 = 4;
 
+/// A ray whose first hit is asked for.
+struct Asking<'a, 'b> {
+    tracer: &'a mut Tracer<'b>,
+    ray: &'a Ray,
+}
+
+impl WithEight for Asking<'_, '_> {
+    type Output = Change;
+
+    #[inline(always)]
+    fn with_eight<S: Eight>(self, simd: S) -> Change {
+        let Self { tracer, ray } = self;
+        match Line::new(ray, &tracer.scene.stage) {
+            None => Change::None,
+            Some(line) => tracer.first_ahead(simd, &line),
+        }
+    }
+}
+
 impl Tracer<'_> {
     /// The first crossing at `t ≥ 0`: where the ray enters, or where it comes out if it
     /// starts inside.
     pub fn first_hit(&mut self, ray: &Ray) -> Option<Crossing> {
-        let line = Line::new(ray, &self.scene.bounds)?;
-        match self.first_ahead(&line) {
+        match with_eight(Asking { tracer: self, ray }) {
             Change::None => None,
             Change::First(crossing) => Some(crossing),
             Change::Collapsed => {
@@ -30,14 +49,15 @@ impl Tracer<'_> {
     }
 
     /// The first change of the solid at `t ≥ 0`.
-    fn first_ahead(&mut self, line: &Line) -> Change {
+    #[inline(always)]
+    fn first_ahead<S: Eight>(&mut self, simd: S, line: &Line) -> Change {
         self.gather_all_but_meshes(line);
         let matters = self.where_mesh_matters(line);
         let mut ahead = Ahead::new(line, &matters);
         let mut passed = 0;
         let mut found = Change::None;
         for asked in 1.. {
-            self.gather_meshes(line, &mut ahead);
+            self.gather_meshes(simd, line, &mut ahead);
             self.events[passed..].sort_unstable_by(in_order);
             let horizon = line.on_ray(ahead.horizon);
             while let Some(&Event { t, .. }) = self.events.get(passed) {
@@ -79,11 +99,13 @@ impl Tracer<'_> {
     }
 
     /// All crossings with leaves of few faces; notes the others.
+    #[inline(always)]
     fn gather_all_but_meshes(&mut self, line: &Line) {
         let Self { scene, events, meshes, .. } = self;
         events.clear();
         meshes.clear();
-        scene.hierarchy.crossed(&line.slabs(&scene.hierarchy.bounds()), |leaf| {
+        let slabs = scene.hierarchy.slabs(line.origin, line.dir);
+        scene.hierarchy.crossed(&slabs, |leaf| {
             let shape = &scene.shapes[leaf as usize];
             if matches!(shape, Shape::Polyhedron(_)) {
                 meshes.push(leaf);
@@ -95,6 +117,7 @@ impl Tracer<'_> {
 
     /// Where on the line the solid depends on the mesh, if there is one and other leaves have
     /// been crossed.
+    #[inline(always)]
     fn where_mesh_matters(&mut self, line: &Line) -> Vec<[f64; 2]> {
         let mut matters = std::mem::take(&mut self.matters);
         matters.clear();
@@ -102,6 +125,9 @@ impl Tracer<'_> {
         let (start, mut from) = (line.on_line(0.0), f64::NEG_INFINITY);
         let Scene { program, literals, .. } = self.scene;
         let literal = literals[mesh as usize];
+        if self.events.is_empty() {
+            return matters;
+        }
         self.events.sort_unstable_by(in_order);
         for i in 0..self.events.len() {
             let Event { t, leaf, sense, .. } = self.events[i];
@@ -120,11 +146,12 @@ impl Tracer<'_> {
     }
 
     /// The crossings of meshes up to a horizon.
-    fn gather_meshes(&mut self, line: &Line, ahead: &mut Ahead<'_>) {
+    #[inline(always)]
+    fn gather_meshes<S: Eight>(&mut self, simd: S, line: &Line, ahead: &mut Ahead<'_>) {
         let Self { scene, events, meshes, .. } = self;
         for &leaf in &*meshes {
             if let Shape::Polyhedron(mesh) = &scene.shapes[leaf as usize] {
-                mesh.crossings_ahead(line, ahead, &mut Sink { events, leaf });
+                mesh.crossings_ahead(simd, line, ahead, &mut Sink { events, leaf });
             }
         }
     }

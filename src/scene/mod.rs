@@ -25,7 +25,7 @@ use crate::aabb::Aabb;
 use crate::bvh::Bvh;
 use crate::color::Color;
 use crate::ray::{Crossing, Ray, Sense};
-use crate::shape::{Line, Shape, Spot, inverse_power_of_two};
+use crate::shape::{Line, Shape, Spot, Stage, inverse_power_of_two};
 use crate::solid::{Place, Solid};
 pub(crate) use beam::{Bunch, BunchTracer, Chords, SIDE, Tile, TileTracer};
 pub use classify::Membership;
@@ -44,7 +44,8 @@ pub use weld::{NearMisses, Weld};
 /// and a triangle 110, and the scene 2 MiB; and 20 MiB while it learns.
 #[derive(Debug)]
 pub struct Scene {
-    bounds: Aabb,
+    /// The box around the solid.
+    stage: Stage,
     program: Program,
     /// The counts of the program's nodes where no leaf is near.
     far_away: Vec<u32>,
@@ -146,7 +147,7 @@ impl Scene {
     /// A box around the solid, empty if the solid plainly is. It is found from the boxes of
     /// the leaves and may be larger than it need be where leaves are cut.
     pub fn bounds(&self) -> Aabb {
-        self.bounds
+        self.stage.bounds
     }
 
     /// Whether a point is inside. Points of the boundary may go either way.
@@ -200,7 +201,7 @@ impl Scene {
     /// can make a span appear or vanish; [`Tracer::classify`] says of a point that it is
     /// [`On`](Membership::On) there.
     pub fn error_at(&self, ray: &Ray, crossing: &Crossing) -> f64 {
-        let Some(line) = Line::new(ray, &self.bounds) else { return f64::INFINITY };
+        let Some(line) = Line::new(ray, &self.stage) else { return f64::INFINITY };
         let t = line.on_line(crossing.t);
         let slack = self.slacks[crossing.leaf as usize];
         let surface = self.shapes[crossing.leaf as usize].surface();
@@ -216,7 +217,7 @@ impl Scene {
     /// bound is not small, because the ray runs along a face, the step is a millionth of the
     /// size of the solid.
     pub fn point_before(&self, ray: &Ray, crossing: &Crossing) -> DVec3 {
-        let most = 1e-6 * self.bounds.size().length() / ray.speed();
+        let most = 1e-6 * self.stage.bounds.size().length() / ray.speed();
         ray.at(crossing.t - (2.0 * self.error_at(ray, crossing)).min(most))
     }
 

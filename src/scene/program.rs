@@ -154,8 +154,15 @@ impl Program {
         self.nodes[node as usize].parent
     }
 
-    /// Tells the nodes above a leaf that it has become true or false.
-    pub(crate) fn toggle(&self, counts: &mut [u32], parent: u32, mut value: bool) {
+    /// Tells the nodes above a leaf that it has become true or false; says whether the root
+    /// changes.
+    #[inline]
+    pub(crate) fn toggle(
+        &self,
+        counts: &mut [u32],
+        parent: u32,
+        mut value: bool,
+    ) -> bool {
         let mut at = parent;
         loop {
             let (node, count) = (&self.nodes[at as usize], &mut counts[at as usize]);
@@ -163,7 +170,7 @@ impl Program {
             *count = if value { *count + 1 } else { *count - 1 };
             let after = *count >= node.need;
             if before == after || at == 0 {
-                return;
+                return before != after;
             }
             value = after;
             at = node.parent;

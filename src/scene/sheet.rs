@@ -37,7 +37,7 @@ impl Extent {
     /// are moved by rounding by no more than `slack`.
     pub(super) fn new(bounds: &Aabb, scene: &Aabb, condition: f64, slack: f64) -> Self {
         let near = if bounds.is_bounded() { *bounds } else { *scene };
-        let far = near.min.abs().max(near.max.abs()).max_element();
+        let far = near.reach();
         let radius = 0.5 * near.size().length();
         let rounding = (ROUNDING * condition * far).min(BOUNDS * slack);
         let is_lost = rounding * condition * LOST > radius;

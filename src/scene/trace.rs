@@ -82,7 +82,7 @@ impl<'a> Tracer<'a> {
     /// are such gaps.
     pub fn spans(&mut self, ray: &Ray) -> &[Span] {
         self.clear();
-        if let Some(line) = Line::new(ray, &self.scene.bounds) {
+        if let Some(line) = Line::new(ray, &self.scene.stage) {
             self.gather(&line);
             self.sweep(&line, [f64::NEG_INFINITY, f64::INFINITY]);
             debug_assert!(self.counts == self.scene.far_away, "the counters are back");
@@ -99,7 +99,8 @@ impl<'a> Tracer<'a> {
     fn gather(&mut self, line: &Line) {
         let Self { scene, events, .. } = self;
         events.clear();
-        scene.hierarchy.crossed(&line.slabs(&scene.hierarchy.bounds()), |leaf| {
+        let slabs = scene.hierarchy.slabs(line.origin, line.dir);
+        scene.hierarchy.crossed(&slabs, |leaf| {
             scene.shapes[leaf as usize].crossings(ALL, line, &mut Sink { events, leaf });
         });
         events.sort_unstable_by(in_order);
@@ -217,17 +218,17 @@ impl<'a> Tracer<'a> {
 
     /// Toggles the leaves of the events at one place; says what the solid does there, and to which
     /// event that is put down.
+    #[inline]
     pub(super) fn pass(
         &mut self,
         group: std::ops::Range<usize>,
     ) -> Option<(Event, Sense)> {
-        let before = self.root();
         if group.len() == 1 {
             let event = self.events[group.start];
-            self.cross(event.leaf, event.sense);
-            let after = self.root();
-            return (before != after).then(|| (event, change_to(after)));
+            let changes = self.cross(event.leaf, event.sense);
+            return changes.then(|| (event, change_to(self.root())));
         }
+        let before = self.root();
         self.note_followers(group.clone(), before);
         self.toggle(group.clone());
         let after = self.root();
@@ -254,9 +255,9 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// Tells the counters that a leaf is entered or left.
+    /// Tells the counters that a leaf is entered or left; says whether the solid is.
     #[inline]
-    pub(super) fn cross(&mut self, leaf: u32, sense: Sense) {
+    pub(super) fn cross(&mut self, leaf: u32, sense: Sense) -> bool {
         let Scene { program, literals, .. } = self.scene;
         let literal = literals[leaf as usize];
         let winding = &mut self.winding[leaf as usize];
@@ -266,13 +267,8 @@ impl<'a> Tracer<'a> {
             Sense::Exit => -1,
         };
         let is_inside = *winding > 0;
-        if was_inside != is_inside {
-            program.toggle(
-                &mut self.counts,
-                literal.parent,
-                is_inside != literal.complement,
-            );
-        }
+        let value = is_inside != literal.complement;
+        was_inside != is_inside && program.toggle(&mut self.counts, literal.parent, value)
     }
 
     /// Goes back through the first events to before them all, which brings the counters back.

@@ -7,8 +7,8 @@ use super::pack::{Pack, Sight};
 use super::polyhedron::Polyhedron;
 use super::shear::{Shear, crossing};
 use super::{IndexedMesh, Sink};
-use crate::bvh::{Probe, Slabs, Visitor};
-use crate::eight::{Eight, WithEight, with_eight};
+use crate::bvh::{Probe, Visitor};
+use crate::eight::Eight;
 
 /// Which crossings of a line are wanted.
 #[derive(Clone, Copy, Debug)]
@@ -58,33 +58,18 @@ impl Polyhedron {
     /// Hands over the crossings behind what is known up to the horizon, and perhaps others
     /// beyond that; brings the horizon nearer. Where all crossings are behind the start there
     /// are none: it is as often entered as left there.
-    pub(crate) fn crossings_ahead(
+    #[inline(always)]
+    pub(crate) fn crossings_ahead<S: Eight>(
         &self,
+        simd: S,
         line: &Line,
         ahead: &mut Ahead<'_>,
         sink: &mut Sink<'_>,
     ) {
-        with_eight(LookingAhead { mesh: self, line, ahead, sink });
-    }
-}
-
-/// A line that is to be looked for in a mesh.
-struct LookingAhead<'a, 'b, 'c> {
-    mesh: &'a Polyhedron,
-    line: &'a Line,
-    ahead: &'a mut Ahead<'c>,
-    sink: &'a mut Sink<'b>,
-}
-
-impl WithEight for LookingAhead<'_, '_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_eight<S: Eight>(self, simd: S) {
-        let Self { mesh, line, ahead, sink } = self;
+        let mesh = self;
         let Some((origin, dir)) = mesh.in_frame(line) else { return };
         let IndexedMesh { faces, packs, points, scale, .. } = mesh.indexed();
-        let slabs = Slabs::new(origin, dir, &faces.bounds());
+        let slabs = faces.slabs(origin, dir);
         let [near, far] = slabs.range(&faces.bounds());
         let is_met = near <= far;
         if !is_met || ahead.is_beside(line, [near, far]) {

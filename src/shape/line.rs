@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::doubt::U;
 use crate::aabb::Aabb;
-use crate::bvh::Slabs;
 use crate::lanes::{Lanes, Vec3};
 use crate::ray::Ray;
 
@@ -37,11 +36,12 @@ pub(crate) struct Line {
 
 impl Line {
     /// The ray as a line, unless it passes by the bounds or is not valid.
-    pub(crate) fn new(ray: &Ray, bounds: &Aabb) -> Option<Self> {
-        if !bounds.is_bounded() {
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray, stage: &Stage) -> Option<Self> {
+        if !stage.is_bounded {
             return None;
         }
-        let (line, met) = Lines::new(ray.origin.into(), ray.dir.into(), bounds);
+        let (line, met) = Lines::new(ray.origin.into(), ray.dir.into(), stage);
         met.then(|| line.into())
     }
 
@@ -52,6 +52,7 @@ impl Line {
     }
 
     /// A place on the ray as a place on this line.
+    #[inline(always)]
     pub(crate) fn on_line(&self, t: f64) -> f64 {
         t / self.scale - self.offset
     }
@@ -65,10 +66,27 @@ impl Line {
     pub(crate) fn error_on_ray(&self, t: f64, error: f64) -> f64 {
         (error + 4.0 * U * (self.offset.abs() + t.abs())) * self.scale
     }
+}
 
-    /// Box tests along this line.
-    pub(crate) fn slabs(&self, bounds: &Aabb) -> Slabs {
-        Slabs::new(self.origin, self.dir, bounds)
+/// The box around a scene, and what lines want to know of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stage {
+    pub(crate) bounds: Aabb,
+    pub(crate) is_bounded: bool,
+    /// The power of two that is about the length of its longest edge.
+    size: f64,
+    /// The largest coordinate.
+    reach: f64,
+}
+
+impl Stage {
+    pub(crate) fn new(bounds: Aabb) -> Self {
+        Self {
+            bounds,
+            is_bounded: bounds.is_bounded(),
+            size: 1.0 / inverse_power_of_two(bounds.size().max_element()),
+            reach: bounds.reach(),
+        }
     }
 }
 
@@ -96,19 +114,19 @@ impl From<Lines<f64>> for Line {
 impl<L: Lanes> Lines<L> {
     /// Rays as lines, and which of them are valid and meet the bounds, which are bounded.
     #[inline(always)]
-    pub(crate) fn new(origin: Vec3<L>, dir: Vec3<L>, bounds: &Aabb) -> (Self, L::Mask) {
+    pub(crate) fn new(origin: Vec3<L>, dir: Vec3<L>, stage: &Stage) -> (Self, L::Mask) {
         let like = origin.x;
         let (zero, infinity) = (like.same(0.0), like.same(f64::INFINITY));
         let is_finite = origin.is_finite() & dir.is_finite();
         let largest = dir.largest();
-        let size = like.same(1.0 / inverse_power_of_two(bounds.size().max_element()));
+        let size = like.same(stage.size);
         let scale = largest.inverse_power_of_two();
         // One factor after the other: their product need not be a number.
         let (dir, scale) = (dir.scaled(scale).scaled(size), scale * size);
         let is_normal = !scale.less(like.same(f64::MIN_POSITIVE)) & scale.less(infinity);
         let is_valid = is_normal & zero.less(largest) & is_finite;
 
-        let [near, far] = within(origin, dir, bounds);
+        let [near, far] = within(origin, dir, stage);
         // A range that is not finite belongs to a line too far away to be told apart.
         let meets = !far.less(near) & near.is_finite() & far.is_finite();
         let width = (far - near).max(like.same(LEAST_WIDTH));
@@ -120,11 +138,10 @@ impl<L: Lanes> Lines<L> {
 
 /// From where to where lines are in a box, widened as [`Slabs::new`] has it.
 #[inline(always)]
-fn within<L: Lanes>(origin: Vec3<L>, dir: Vec3<L>, bounds: &Aabb) -> [L; 2] {
+fn within<L: Lanes>(origin: Vec3<L>, dir: Vec3<L>, stage: &Stage) -> [L; 2] {
     let like = origin.x;
-    let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let Stage { bounds: Aabb { min, max }, reach, .. } = *stage;
     let pad = like.same(8.0 * f64::EPSILON) * (like.same(reach) + origin.largest());
-    let Aabb { min, max } = *bounds;
     let [x0, x1] = within_slab(origin.x, dir.x, [min.x, max.x], pad);
     let [y0, y1] = within_slab(origin.y, dir.y, [min.y, max.y], pad);
     let [z0, z1] = within_slab(origin.z, dir.z, [min.z, max.z], pad);

@@ -43,7 +43,7 @@ pub(crate) use chain::Chain;
 use cuboid::Cuboid;
 pub(crate) use doubt::{Local, Spot, U};
 use half_space::HalfSpace;
-pub(crate) use line::{Line, Lines, Rays, inverse_power_of_two};
+pub(crate) use line::{Line, Lines, Rays, Stage, inverse_power_of_two};
 pub(crate) use pack::{Kept, Linear, Pack, View};
 use place::Frame;
 pub(crate) use place::{ToLocal, inverse};
@@ -234,6 +234,7 @@ impl Shape {
     /// Hands over all crossings with a line, in any order: as many in as out, infinite ones
     /// where the line starts or ends inside. Of a leaf with few faces those are taken for far
     /// away whose bits are zero.
+    #[inline(always)]
     pub(crate) fn crossings(&self, faces: u32, line: &Line, sink: &mut Sink<'_>) {
         match self {
             Self::Cuboid(leaf) => {
@@ -303,6 +304,7 @@ pub(crate) struct Sink<'a> {
 
 impl Sink<'_> {
     /// The line is inside on a stretch; nothing if that is empty.
+    #[inline(always)]
     fn stretch(&mut self, stretch: &Stretch<f64>) {
         if stretch.enter < stretch.exit {
             self.crossing(stretch.enter, face_of(stretch.enter_face), Sense::Enter);

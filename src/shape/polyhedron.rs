@@ -11,7 +11,7 @@ use super::place::{Frame, ToLocal};
 use super::shear::{Shear, crossing, level};
 use super::{Line, Sink, Surface};
 use crate::aabb::Aabb;
-use crate::bvh::{Bvh, Slabs, Visitor};
+use crate::bvh::{Bvh, Visitor};
 use crate::eight::{EIGHT, Eight, WithEight, with_eight};
 use crate::mesh::Mesh;
 use crate::ray::Sense;
@@ -49,9 +49,8 @@ impl IndexedMesh {
         };
         let packs = ends.windows(2).map(&mut pack).collect();
         let bounds = faces.bounds();
-        let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
         let points = points.into_list();
-        Self { mesh, faces, packs, points, scale: inverse_power_of_two(largest) }
+        Self { mesh, faces, packs, points, scale: inverse_power_of_two(bounds.reach()) }
     }
 
     /// The largest coordinates.
@@ -154,8 +153,7 @@ impl Polyhedron {
         packs: &mut Vec<u32>,
     ) {
         let faces = &self.mesh.faces;
-        let slabs = Slabs::new(center, along, &faces.bounds());
-        faces.crossed_by(&slabs, breadth, |pack| packs.push(pack));
+        faces.crossed_by(&faces.slabs(center, along), breadth, |pack| packs.push(pack));
     }
 
     /// The function `weights · (p − origin) + constant` of points of the mesh, which is off by
@@ -243,7 +241,7 @@ impl WithEight for Through<'_, '_> {
         let Self { mesh, line, sink } = self;
         let Some((origin, dir)) = mesh.in_frame(line) else { return };
         let IndexedMesh { faces, packs, points, scale, .. } = &*mesh.mesh;
-        let slabs = Slabs::new(origin, dir, &faces.bounds());
+        let slabs = faces.slabs(origin, dir);
         if !slabs.cross(&faces.bounds()) {
             return;
         }

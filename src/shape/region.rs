@@ -65,8 +65,7 @@ impl Region {
         let breadth = sides[0].abs() + sides[1].abs();
         // The line, the region and the equations of leaves are rounded a few times each.
         let rounding = 64.0 * U * reach;
-        let around = Aabb::new(DVec3::splat(-reach), DVec3::splat(reach));
-        let slabs = Slabs::new(center, along, &around);
+        let slabs = Slabs::new(center, along, reach);
         Self { center, along, sides, breadth, rounding, slabs }
     }
 

@@ -9,8 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 
-use super::{ALL, Chain, Event, IndexedMesh, Line, Shape, Sink};
-use crate::aabb::Aabb;
+use super::{ALL, Chain, Event, IndexedMesh, Line, Shape, Sink, Stage};
 use crate::mesh::Mesh;
 use crate::ray::{Ray, Sense};
 use crate::support::dice::Dice;
@@ -22,7 +21,7 @@ struct Case {
     mesh: Arc<Mesh>,
     map: DAffine3,
     shape: Shape,
-    bounds: Aabb,
+    stage: Stage,
 }
 
 impl Case {
@@ -35,13 +34,13 @@ impl Case {
         let indexed = Arc::new(IndexedMesh::new(mesh.clone()));
         let placed = Shape::place_mesh(indexed, &Chain::NOTHING.then(&map))
             .expect("a regular map");
-        Self { name, mesh, map, shape: placed.shape, bounds: placed.bounds }
+        Self { name, mesh, map, shape: placed.shape, stage: Stage::new(placed.bounds) }
     }
 
     /// The crossings with the line of a ray, unsorted, and the line.
     fn crossings(&self, ray: &Ray, events: &mut Vec<Event>) -> Option<Line> {
         events.clear();
-        let line = Line::new(ray, &self.bounds)?;
+        let line = Line::new(ray, &self.stage)?;
         self.shape.crossings(ALL, &line, &mut Sink { events, leaf: 0 });
         Some(line)
     }

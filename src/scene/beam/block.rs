@@ -3,10 +3,9 @@
 use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::aabb::Aabb;
 use crate::lanes::{Lanes, Vec3, Vector};
 use crate::ray::Ray;
-use crate::shape::{Line, Lines, Rays, Shape, Stretch};
+use crate::shape::{Line, Lines, Rays, Shape, Stage, Stretch};
 
 /// How many rays a block has: 8 × 8.
 pub(super) const BLOCK: usize = 64;
@@ -82,8 +81,8 @@ impl Block {
 
     /// Makes lines of the rays; says which of them are valid and meet the bounds, which are
     /// bounded.
-    pub(super) fn make_lines(&mut self, arch: Arch, bounds: &Aabb) -> u64 {
-        arch.dispatch(MakeLines { block: self, bounds })
+    pub(super) fn make_lines(&mut self, arch: Arch, stage: &Stage) -> u64 {
+        arch.dispatch(MakeLines { block: self, stage })
     }
 
     /// One of the lines.
@@ -133,7 +132,7 @@ pub(super) fn slots_of(shape: &Shape, faces: u32) -> usize {
 
 struct MakeLines<'a> {
     block: &'a mut Block,
-    bounds: &'a Aabb,
+    stage: &'a Stage,
 }
 
 impl WithSimd for MakeLines<'_> {
@@ -157,7 +156,7 @@ impl WithSimd for MakeLines<'_> {
 impl MakeLines<'_> {
     #[inline(always)]
     fn make<S: Simd>(&mut self, simd: S, common: Option<Vec3<Vector<S>>>) -> u64 {
-        let Self { block, bounds } = self;
+        let Self { block, stage } = self;
         let mut met = [0.0; BLOCK];
         for i in 0..BLOCK / S::F64_LANES {
             let origin = load3(simd, &block.origin, i);
@@ -165,7 +164,7 @@ impl MakeLines<'_> {
                 Some(dir) => dir,
                 None => load3(simd, &block.dir, i),
             };
-            let (lines, valid) = Lines::new(origin, dir, bounds);
+            let (lines, valid) = Lines::new(origin, dir, stage);
             let Lines { rays: Rays { origin, rest, dir }, offset, scale } = lines;
             store3(&mut block.origin, i, origin);
             store3(&mut block.rest, i, rest);

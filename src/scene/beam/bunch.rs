@@ -105,7 +105,7 @@ impl<'a> BunchTracer<'a> {
     /// Finds the leaves that matter to a bunch; nothing if it does not meet the solid. To be
     /// followed by leaving what has been looked at.
     fn look_at<'b>(&mut self, bunch: &Bunch<'b>) -> Option<(Sight<'b>, List)> {
-        if !self.scene.bounds.is_bounded() {
+        if !self.scene.stage.is_bounded {
             return None;
         }
         let sight = Sight::new(bunch.fan, bunch.corners, self.scene);
@@ -127,7 +127,7 @@ impl<'a> BunchTracer<'a> {
             self.block.set_ray(i, &fan.ray(right, up));
         }
         let wanted = u64::MAX >> (BLOCK - places.len());
-        let wanted = wanted & self.block.make_lines(self.packet.arch, &self.scene.bounds);
+        let wanted = wanted & self.block.make_lines(self.packet.arch, &self.scene.stage);
         self.packet.meet(self.scene, &self.block, wanted);
         wanted
     }

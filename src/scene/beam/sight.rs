@@ -24,7 +24,7 @@ impl<'a> Sight<'a> {
         let level = |v: DVec3| v * inverse_power_of_two(v.abs().max_element());
         let across = level(steps.right).cross(level(steps.up));
         let axis = across / across.dot(fan.dir.middle);
-        let bounds = &scene.bounds;
+        let bounds = &scene.stage.bounds;
         let depths =
             bounds.corners().map(|corner| (corner - fan.origin.middle).dot(axis));
         let near = depths.into_iter().fold(f64::INFINITY, f64::min);

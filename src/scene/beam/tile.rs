@@ -125,7 +125,7 @@ impl<'a> TileTracer<'a> {
                 self.open[place / BLOCK] |= 1 << (place % BLOCK);
             }
         }
-        if self.scene.bounds.is_bounded() {
+        if self.scene.stage.is_bounded {
             self.look_at(tile);
         }
         for j in 0..tile.size[1] {
@@ -145,7 +145,7 @@ impl<'a> TileTracer<'a> {
                 self.blocks[block].set_ray(ray, &tile.ray_of(block, ray));
             }
             let valid =
-                self.blocks[block].make_lines(self.packet.arch, &self.scene.bounds);
+                self.blocks[block].make_lines(self.packet.arch, &self.scene.stage);
             self.open[block] &= valid;
         }
     }

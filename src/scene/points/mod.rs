@@ -58,13 +58,13 @@ impl Room {
     /// coordinate for lines: that is 8192 roundings, of which a line and a leaf together have
     /// some dozens, more where a map has a large condition number.
     pub(super) fn of(scene: &Scene) -> Option<Self> {
-        let bounds = scene.bounds;
+        let bounds = scene.stage.bounds;
         let leaves = scene.hierarchy.bounds();
         if !bounds.is_bounded() || !leaves.is_bounded() {
             return None;
         }
         let all = bounds.hull(leaves);
-        let reach = all.min.abs().max(all.max.abs()).max_element();
+        let reach = all.reach();
         let relative = 8192.0 * U + 64.0 * U * scene.worst_condition;
         let pad = 64.0 * scene.worst_slack + relative * reach;
         let size = bounds.size().max_element();

@@ -162,7 +162,7 @@ impl Raster {
 
 /// Whether a point is inside of a leaf, as the line through it says.
 fn is_inside(scene: &Scene, leaf: u32, point: DVec3) -> bool {
-    let Some(line) = Line::new(&Ray::new(point, PROBE), &scene.bounds) else {
+    let Some(line) = Line::new(&Ray::new(point, PROBE), &scene.stage) else {
         return false;
     };
     let events = &mut Vec::new();
