@@ -83,6 +83,7 @@ mod lanes;
 pub mod measure;
 mod mesh;
 mod op;
+mod parts;
 mod progress;
 mod ray;
 pub mod read;
@@ -98,10 +99,11 @@ pub use census::Census;
 pub use color::Color;
 pub use mesh::{Mesh, MeshError, OpenEdge};
 pub use op::Op;
-pub use progress::Progress;
+pub use parts::Part;
+pub use progress::{Progress, Watch, unwatched};
 pub use ray::{Crossing, Ray, Sense, Span};
 pub use scene::{
-    CompileError, CompileOptions, Leaf, LeafName, Membership, NearMisses, Part, Scene,
-    Tracer, Weld,
+    CompileError, CompileOptions, Leaf, LeafName, Membership, NearMisses, Scene, Tracer,
+    Weld,
 };
 pub use solid::{Place, Solid, View};

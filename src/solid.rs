@@ -292,7 +292,7 @@ impl Solid {
         self.tagged(Tag::Outline)
     }
 
-    fn tagged(self, tag: Tag) -> Self {
+    pub(crate) fn tagged(self, tag: Tag) -> Self {
         Self::new(Kind::Tagged(tag), vec![self])
     }
 
@@ -302,6 +302,19 @@ impl Solid {
 
     pub(crate) fn node(&self) -> &Node {
         &self.0
+    }
+
+    pub(crate) fn kind(&self) -> &Kind {
+        &self.0.kind
+    }
+
+    pub(crate) fn children(&self) -> &[Self] {
+        &self.0.children
+    }
+
+    /// A number that tells it from other nodes as long as it lives.
+    pub(crate) fn address(&self) -> usize {
+        Arc::as_ptr(&self.0).addr()
     }
 }
 

@@ -12,12 +12,12 @@ use super::options::CompileOptions;
 use super::program::{Combine, Literal, Program};
 use super::sheet::Extent;
 use super::weld::{NearMisses, Refusal, Weld};
-use super::{Part, Scene, digits};
+use super::{Scene, digits};
 use crate::aabb::Aabb;
 use crate::bvh::Bvh;
-use crate::color::Color;
 use crate::mesh::Mesh;
 use crate::op::Op;
+use crate::parts::Part;
 use crate::shape::{BadParameter, Chain, Placed, Plane, Primitive, Shape, Slack, Stage};
 use crate::shown::Shown;
 use crate::solid::{Kind, Place, Solid, Tag};
@@ -151,8 +151,7 @@ impl std::fmt::Display for Advice {
 #[derive(Clone)]
 struct Context {
     chain: Chain,
-    name: Option<Arc<str>>,
-    color: Option<Color>,
+    part: Part,
     place: Option<Place>,
     /// Within an outline: whether that is subtracted.
     subtracted: Option<bool>,
@@ -236,8 +235,7 @@ fn visit(solid: &Solid, options: &CompileOptions) -> Result<Compiler, CompileErr
     };
     let mut contexts = vec![Context {
         chain: Chain::NOTHING,
-        name: None,
-        color: None,
+        part: Part::default(),
         place: None,
         subtracted: None,
     }];
@@ -295,8 +293,9 @@ impl Context {
         let mut inner = self.clone();
         match kind {
             Kind::Mapped(map) => inner.chain = self.chain.then(map),
-            Kind::Tagged(Tag::Name(name)) => inner.name = Some(name.clone()),
-            Kind::Tagged(Tag::Color(color)) => inner.color = inner.color.or(Some(*color)),
+            Kind::Tagged(tag @ (Tag::Name(_) | Tag::Color(_))) => {
+                inner.part = inner.part.tagged(tag);
+            }
             Kind::Tagged(Tag::Place(place)) => inner.place = Some(*place),
             Kind::Tagged(Tag::Outline) => {
                 inner.subtracted = inner.subtracted.or(Some(complement));
@@ -373,10 +372,8 @@ impl Compiler {
     }
 
     fn part(&mut self, context: &Context) -> u32 {
-        let Context { name, color, .. } = context;
-        let key = (name.clone(), color.map(|c| c.rgba.map(f32::to_bits)));
-        *self.part_numbers.entry(key).or_insert_with(|| {
-            self.part_list.push(Part { name: name.clone(), color: *color });
+        *self.part_numbers.entry(context.part.key()).or_insert_with(|| {
+            self.part_list.push(context.part.clone());
             u32::try_from(self.part_list.len() - 1)
                 .expect("there are no more parts than leaves")
         })
@@ -384,7 +381,7 @@ impl Compiler {
 
     fn leaf_name(&self, kind: &'static str, context: &Context) -> LeafName {
         let number = u32::try_from(self.shapes.len()).unwrap_or(u32::MAX);
-        LeafName { number, kind, name: context.name.clone(), place: context.place }
+        LeafName { number, kind, name: context.part.name.clone(), place: context.place }
     }
 
     /// Where the leaves are that can matter, and how well; `None` if the solid is empty and

@@ -17,13 +17,13 @@ mod sheet;
 mod trace;
 mod weld;
 
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use glam::DVec3;
 
 use crate::aabb::Aabb;
 use crate::bvh::Bvh;
-use crate::color::Color;
+use crate::parts::Part;
 use crate::ray::{Crossing, Ray, Sense};
 use crate::shape::{Line, Shape, Spot, Stage, inverse_power_of_two};
 use crate::solid::{Place, Solid};
@@ -70,15 +70,6 @@ pub struct Scene {
     /// cannot be told from surfaces.
     cells: OnceLock<Option<Cells>>,
     welds: Vec<Weld>,
-}
-
-/// Leaves that share a name and a colour.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    /// The name given by [`Solid::named`].
-    pub name: Option<Arc<str>>,
-    /// The colour given by [`Solid::colored`].
-    pub color: Option<Color>,
 }
 
 /// What a scene knows of one of its leaves.

@@ -1,0 +1,195 @@
+//! The parts of a solid: what shares a name and a colour.
+
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+
+use glam::DAffine3;
+
+use crate::color::Color;
+use crate::op::Op;
+use crate::solid::{Kind, Solid, Tag};
+
+/// What leaves are of, if they have a name or a colour.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    /// The name given by [`Solid::named`].
+    pub name: Option<Arc<str>>,
+    /// The colour given by [`Solid::colored`].
+    pub color: Option<Color>,
+}
+
+impl Part {
+    /// What equal parts have in common.
+    pub(crate) fn key(&self) -> (Option<Arc<str>>, Option<[u32; 4]>) {
+        (self.name.clone(), self.color.map(|c| c.rgba.map(f32::to_bits)))
+    }
+
+    /// What it is below a tag: the innermost name and the outermost colour hold.
+    #[must_use]
+    pub(crate) fn tagged(mut self, tag: &Tag) -> Self {
+        match tag {
+            Tag::Name(name) => self.name = Some(name.clone()),
+            Tag::Color(color) => self.color = self.color.or(Some(*color)),
+            Tag::Place(_) | Tag::Outline => {}
+        }
+        self
+    }
+}
+
+/// What a piece of the tree is within, and what is around that.
+struct Around<'a> {
+    step: Step<'a>,
+    outer: Option<usize>,
+}
+
+enum Step<'a> {
+    Mapped(&'a DAffine3),
+    Tagged(&'a Tag),
+    /// Before other operands.
+    With(Op, &'a [Solid]),
+}
+
+impl Solid {
+    /// The solid part by part, in the order in which they first occur.
+    ///
+    /// Material is of the part that it was made of: what is subtracted from something, or
+    /// what that is intersected with, does not change its part. The union of all parts is the solid;
+    /// parts may overlap, as their operands do.
+    pub fn parts(&self) -> Vec<(Part, Self)> {
+        let tagged = self.with_parts();
+        let mut around: Vec<Around<'_>> = Vec::new();
+        let mut found: Vec<(Part, Vec<Self>)> = Vec::new();
+        let mut numbers = HashMap::new();
+        let mut open = vec![(self, Part::default(), None)];
+        while let Some((solid, part, outer)) = open.pop() {
+            let (kind, children) = (solid.kind(), solid.children());
+            if !tagged.contains(&solid.address()) {
+                let piece = put_back(solid.clone(), outer, &around);
+                let number = *numbers.entry(part.key()).or_insert(found.len());
+                if number == found.len() {
+                    found.push((part, Vec::new()));
+                }
+                found[number].1.push(piece);
+                continue;
+            }
+            let mut within = |step| {
+                around.push(Around { step, outer });
+                Some(around.len() - 1)
+            };
+            match (kind, children) {
+                (Kind::Boolean(Op::Union), children) => {
+                    let each = children.iter().rev();
+                    open.extend(each.map(|child| (child, part.clone(), outer)));
+                }
+                (Kind::Boolean(op), [first, rest @ ..]) => {
+                    open.push((first, part, within(Step::With(*op, rest))));
+                }
+                (Kind::Mapped(map), [child]) => {
+                    open.push((child, part, within(Step::Mapped(map))));
+                }
+                (Kind::Tagged(tag), [child]) => {
+                    let part = part.tagged(tag);
+                    open.push((child, part, within(Step::Tagged(tag))));
+                }
+                _ => {}
+            }
+        }
+        let whole = |(part, mut pieces): (Part, Vec<Self>)| match pieces.len() {
+            1 => (part, pieces.swap_remove(0)),
+            _ => (part, Self::boolean(Op::Union, pieces)),
+        };
+        if found.len() == 1 {
+            return vec![(found.swap_remove(0).0, self.clone())];
+        }
+        found.into_iter().map(whole).collect()
+    }
+
+    /// The nodes, by their addresses, from which material can have a name or a colour that it was
+    /// given below.
+    fn with_parts(&self) -> HashSet<usize> {
+        let mut known: HashMap<usize, bool> = HashMap::new();
+        let mut open = vec![(self, false)];
+        while let Some((solid, seen)) = open.pop() {
+            if !seen && known.contains_key(&solid.address()) {
+                continue;
+            }
+            let below = match solid.kind() {
+                Kind::Boolean(Op::Union) | Kind::Mapped(_) | Kind::Tagged(_) => {
+                    solid.children()
+                }
+                Kind::Boolean(_) => solid.children().get(..1).unwrap_or(&[]),
+                Kind::Primitive(_) | Kind::Mesh(_) => &[],
+            };
+            if !seen {
+                open.push((solid, true));
+                open.extend(below.iter().map(|child| (child, false)));
+                continue;
+            }
+            let tag = matches!(solid.kind(), Kind::Tagged(Tag::Name(_) | Tag::Color(_)));
+            let has = tag
+                || below.iter().any(|child| known.get(&child.address()) == Some(&true));
+            known.insert(solid.address(), has);
+        }
+        known.into_iter().filter(|(_, has)| *has).map(|(address, _)| address).collect()
+    }
+}
+
+/// A piece with all that is around it.
+fn put_back(mut piece: Solid, mut outer: Option<usize>, around: &[Around<'_>]) -> Solid {
+    while let Some(i) = outer {
+        piece = match &around[i].step {
+            Step::Mapped(map) => piece.mapped(**map),
+            Step::Tagged(tag) => piece.tagged((*tag).clone()),
+            Step::With(op, rest) => {
+                let operands = std::iter::once(piece).chain(rest.iter().cloned());
+                Solid::boolean(*op, operands)
+            }
+        };
+        outer = around[i].outer;
+    }
+    piece
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    fn colored(solid: Solid, red: f32) -> Solid {
+        solid.colored(Color::rgb(red, 0.0, 0.0))
+    }
+
+    fn colors(solid: &Solid) -> Vec<Option<f32>> {
+        solid.parts().iter().map(|(part, _)| part.color.map(|c| c.rgba[0])).collect()
+    }
+
+    #[test]
+    fn material_is_of_the_part_that_it_was_made_of() {
+        let (a, b) = (colored(Solid::ball(1.0), 0.1), colored(Solid::ball(2.0), 0.2));
+        let plain = Solid::cuboid(DVec3::ONE);
+        assert_eq!(colors(&plain), [None]);
+        assert_eq!(colors(&(a.clone() - b.clone())), [Some(0.1)]);
+        assert_eq!(colors(&(a.clone() & b.clone())), [Some(0.1)]);
+        let both = a.clone() + (plain.clone() + b.clone()).translated(DVec3::X);
+        assert_eq!(colors(&(both.clone() - a.clone())), [Some(0.1), None, Some(0.2)]);
+        // The outermost colour holds, and equal ones are one part.
+        assert_eq!(colors(&colored(both, 0.7)), [Some(0.7)]);
+        assert_eq!(colors(&(a.clone() + (b + a))), [Some(0.1), Some(0.2)]);
+        assert_eq!(colors(&Solid::boolean(Op::Intersection, [])), [None]);
+    }
+
+    #[test]
+    fn long_chains_of_parts_do_not_grow_the_stack() {
+        let mut chain = colored(Solid::ball(1.0), 0.0);
+        for i in 0..300 {
+            let next = colored(Solid::ball(1.0), if i % 2 == 0 { 0.5 } else { 0.0 });
+            chain = (chain + next).translated(DVec3::X) - Solid::ball(0.5);
+        }
+        assert_eq!(chain.parts().len(), 2);
+        let mut deep = colored(Solid::ball(1.0), 0.0);
+        for _ in 0..200_000 {
+            deep = deep - Solid::ball(0.5);
+        }
+        assert_eq!(deep.parts().len(), 1);
+    }
+}
