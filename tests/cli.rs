@@ -2,73 +2,14 @@
 #![cfg(feature = "cli")]
 #![expect(clippy::float_cmp, reason = "these answers are exact")]
 
+mod desk;
+
 use std::fs;
-use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Command;
 
+use desk::{BALL, Desk};
 use serde::Deserialize;
-use tempfile::TempDir;
-
-/// A folder with some models to work in.
-struct Desk(TempDir);
-
-/// What the program did.
-struct Done {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-const BALL: &str = "sphere($fn = 0, $fa = 12, $fs = 2, r = 3);\n";
-const TUBE: &str = "difference() {
-\tcylinder($fn = 0, $fa = 12, $fs = 2, h = 10, r1 = 5, r2 = 5, center = false);
-\tmultmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -1], [0, 0, 0, 1]]) {
-\t\tcylinder($fn = 0, $fa = 12, $fs = 2, h = 12, r1 = 3, r2 = 3, center = false);
-\t}
-}
-";
-
-impl Desk {
-    fn new() -> Self {
-        let desk = Self(tempfile::tempdir().expect("a temporary folder"));
-        desk.put("ball.csg", BALL);
-        desk.put("tube.csg", TUBE);
-        desk
-    }
-
-    fn put(&self, name: &str, text: &str) {
-        fs::write(self.path(name), text).expect("a file in a temporary folder");
-    }
-
-    fn path(&self, name: &str) -> std::path::PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn run(&self, args: &[&str]) -> Done {
-        self.run_with_input(args, "")
-    }
-
-    fn run_with_input(&self, args: &[&str], input: &str) -> Done {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_solidray"))
-            .args(args)
-            .current_dir(self.0.path())
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
-        // A program that does not read its input closes it, which is no failure here.
-        let _ = child.stdin.take().expect("it is piped").write_all(input.as_bytes());
-        let Output { status, stdout, stderr } =
-            child.wait_with_output().expect("it ends");
-        Done {
-            code: status.code().expect("it was not killed"),
-            out: String::from_utf8(stdout).expect("text"),
-            err: String::from_utf8(stderr).expect("text"),
-        }
-    }
-}
 
 #[test]
 fn contains_answers_each_point_and_says_no_if_any_is_out() {
@@ -372,7 +313,7 @@ fn render_writes_a_whole_picture_or_none() {
         assert_eq!(done.code, 2);
         assert!(done.err.contains(message), "{}", done.err);
     }
-    let left = fs::read_dir(desk.0.path()).expect("the folder").count();
+    let left = fs::read_dir(desk.path("")).expect("the folder").count();
     assert_eq!(left, 3, "two models and one picture");
 }
 
@@ -564,7 +505,7 @@ fn a_broken_pipe_is_no_failure() {
     );
     let done = Command::new("sh")
         .args(["-c", &script])
-        .current_dir(desk.0.path())
+        .current_dir(desk.path(""))
         .output()
         .expect("a shell");
     assert_eq!(String::from_utf8_lossy(&done.stdout), "0,0,0 in\n");

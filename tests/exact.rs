@@ -4,6 +4,7 @@
 mod support;
 
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use glam::{DAffine3, DMat3, DVec3, dvec3};
@@ -11,7 +12,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use solidray::measure::{self, Method, Sampling, Verdict};
-use solidray::{Scene, Solid};
+use solidray::{Scene, Solid, unwatched};
 use support::{meshes, scene, strategies};
 
 fn sampling(rel_tol: f64, max_rays: u64, seed: u64) -> Sampling {
@@ -337,13 +338,14 @@ fn progress_counts_every_ray_once() {
     let count = std::sync::atomic::AtomicU64::new(0);
     let add = |rays| {
         count.fetch_add(rays, std::sync::atomic::Ordering::Relaxed);
+        ControlFlow::Continue(())
     };
     let estimate = measure::volume_with(&scene, &sampling(1e-4, 1 << 18, 0), &add);
     assert_eq!(count.into_inner(), estimate.rays);
 }
 
 fn compare(a: &Solid, b: &Solid, tolerance: f64) -> measure::Comparison {
-    measure::compare(a, b, tolerance, &sampling(1e-3, 1 << 19, 0), &|_| {})
+    measure::compare(a, b, tolerance, &sampling(1e-3, 1 << 19, 0), &unwatched)
         .expect("both solids are right")
 }
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use solidray::measure::{self, Sampling};
 use solidray::read::{self, ReadOptions};
 use solidray::render::{Camera, Frame, trace};
-use solidray::{Scene, Sense, Solid};
+use solidray::{Scene, Sense, Solid, unwatched};
 
 fn model(name: &str) -> Solid {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("models").join(name);
@@ -19,8 +19,8 @@ fn answers(solid: &Solid, other: &Solid) -> String {
     let scene = Scene::compile(solid).expect("the model is right");
     let sampling = Sampling { rel_tol: 1e-3, ..Sampling::default() };
     let volume = measure::volume(&scene, &sampling);
-    let comparison =
-        measure::compare(solid, other, 1e-3, &sampling, &|_| ()).expect("both are right");
+    let comparison = measure::compare(solid, other, 1e-3, &sampling, &unwatched)
+        .expect("both are right");
     let camera = Camera::framing(&scene.bounds());
     let frame =
         trace(&scene, &camera.view([200, 150], &scene.bounds()), [0.5; 2], &|_| ());

@@ -172,6 +172,7 @@ fn is_about_the_model(error: &anyhow::Error) -> bool {
 /// One round of the smallest lattices.
 const A_FEW_RAYS: Sampling = Sampling {
     rel_tol: 0.0,
+    abs_tol: 0.0,
     max_rays: 0,
     time_limit: Some(Duration::from_secs(2)),
     seed: 0,

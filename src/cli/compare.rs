@@ -10,6 +10,7 @@ use serde::Serialize;
 use solidray::measure::{self, Comparison, Verdict, Worst};
 
 use super::input::Reading;
+use super::interrupt;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, point};
 use super::sampling::{SamplingArgs, positive};
@@ -74,13 +75,18 @@ impl Compare {
         let start = Instant::now();
         let meter = Meter::new(global, "comparing", None);
         let sampling = self.sampling.meant();
+        let interrupted = interrupt::watched()?;
+        let watch = |rays| {
+            meter.tick(rays);
+            interrupt::flow(interrupted)
+        };
         let found = measure::compare_with(
             &a,
             &b,
             self.tol,
             &sampling,
             &self.reading.compiling(),
-            &|n| meter.tick(n),
+            &watch,
         )?;
         drop(meter);
         let seconds = start.elapsed().as_secs_f64();

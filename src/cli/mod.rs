@@ -10,6 +10,8 @@ mod check;
 mod compare;
 mod contains;
 mod input;
+mod interrupt;
+mod measure;
 mod meter;
 mod numbers;
 mod output;
@@ -90,6 +92,8 @@ enum Command {
     Ray(ray::Rays),
     Contains(contains::Contains),
     Volume(volume::Volume),
+    Measure(measure::Measure),
+    Merge(measure::Merge),
     Compare(compare::Compare),
 }
 
@@ -108,6 +112,8 @@ impl Command {
             Self::Ray(command) => command.run(global, out),
             Self::Contains(command) => command.run(global, out),
             Self::Volume(command) => command.run(global, out),
+            Self::Measure(command) => command.run(global, out),
+            Self::Merge(command) => command.run(global, out),
             Self::Compare(command) => command.run(global, out),
         }
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use solidray::Aabb;
 use solidray::measure::Estimate;
 
@@ -54,16 +54,22 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
         return format!("not resolved: at most {:.3e} (95 %)", estimate.interval[1]);
     }
     let half_width = estimate.half_width();
+    let percent = if half_width == 0.0 { "" } else { " (95 %)" };
+    format!("{}{percent}", number(estimate.value, half_width))
+}
+
+/// Digits that were earned, then the half width of the interval, if it has any.
+pub(super) fn number(value: f64, half_width: f64) -> String {
     if half_width == 0.0 {
-        return format!("{}", estimate.value);
+        return format!("{value}");
     }
     let decimals = decimals(half_width);
-    if decimals > 12 || estimate.value.abs() >= 1e15 {
-        let digits = (estimate.value.abs() / half_width).max(1.0).log10().floor() + 1.0;
+    if decimals > 12 || value.abs() >= 1e15 {
+        let digits = (value.abs() / half_width).max(1.0).log10().floor() + 1.0;
         let digits = decimals_of(digits);
-        return format!("{:.digits$e} ± {half_width:.1e} (95 %)", estimate.value);
+        return format!("{value:.digits$e} ± {half_width:.1e}");
     }
-    format!("{:.decimals$} ± {half_width:.decimals$} (95 %)", estimate.value)
+    format!("{value:.decimals$} ± {half_width:.decimals$}")
 }
 
 /// How many spans there were and how many of them rounding decided.
@@ -93,10 +99,10 @@ fn decimals_of(digits: f64) -> usize {
 }
 
 /// A box as JSON.
-#[derive(Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct BoundsJson {
-    min: [f64; 3],
-    max: [f64; 3],
+    pub(super) min: [f64; 3],
+    pub(super) max: [f64; 3],
 }
 
 /// `null` for an empty box.

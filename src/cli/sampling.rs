@@ -11,6 +11,9 @@ pub(super) struct SamplingArgs {
     /// Go on until the half width of the 95 % interval is this fraction of the value
     #[arg(long, value_name = "T", default_value = "1e-4", value_parser = positive, help_heading = "Sampling")]
     rel_tol: f64,
+    /// The same in the units of the value; the wider of the two is enough
+    #[arg(long, value_name = "T", default_value = "0", value_parser = not_negative, help_heading = "Sampling")]
+    abs_tol: f64,
     /// Stop at this many rays though the tolerance is not met; the first round takes 3728
     #[arg(long, value_name = "N", default_value_t = Sampling::default().max_rays, value_parser = clap::value_parser!(u64).range(1..), help_heading = "Sampling")]
     max_rays: u64,
@@ -26,12 +29,21 @@ impl SamplingArgs {
     pub(super) fn meant(&self) -> Sampling {
         Sampling {
             rel_tol: self.rel_tol,
+            abs_tol: self.abs_tol,
             max_rays: self.max_rays,
             time_limit: self
                 .time_limit
                 .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
             seed: self.seed,
         }
+    }
+}
+
+/// A finite number that is not below zero.
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
+        Ok(_) | Err(_) => Err(format!("`{text}` is not a finite number of at least 0")),
     }
 }
 

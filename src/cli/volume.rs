@@ -9,6 +9,7 @@ use serde::Serialize;
 use solidray::measure;
 
 use super::input::Reading;
+use super::interrupt;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, uncertain_in_words};
 use super::sampling::SamplingArgs;
@@ -50,7 +51,12 @@ impl Volume {
         let sampling = self.sampling.meant();
         let start = Instant::now();
         let meter = Meter::new(global, "measuring", None);
-        let volume = measure::volume_with(&loaded.scene, &sampling, &|n| meter.tick(n));
+        let interrupted = interrupt::watched()?;
+        let watch = |rays| {
+            meter.tick(rays);
+            interrupt::flow(interrupted)
+        };
+        let volume = measure::volume_with(&loaded.scene, &sampling, &watch);
         drop(meter);
         let seconds = start.elapsed().as_secs_f64();
         if global.json {

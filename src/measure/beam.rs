@@ -12,7 +12,7 @@ use crate::scene::Bunch;
 /// bits, and the number of threads is not.
 const BUNCH: u64 = 192;
 
-/// Parallel rays that cover a box, all but along its longest edge.
+/// Parallel rays that cover a box, all but along one of its edges.
 ///
 /// They lean a little. Models are full of faces and cylinders along the axes, and seen
 /// exactly along one of them the length of a chord jumps at such a silhouette, which costs
@@ -29,11 +29,16 @@ pub(super) struct Beam {
 const LEAN: DVec2 = DVec2::new(0.31, 0.23);
 
 impl Beam {
+    /// All but along the longest edge.
     pub(super) fn new(bounds: Aabb) -> Self {
+        Self::along(bounds, bounds.size().max_position())
+    }
+
+    /// All but along an axis.
+    pub(super) fn along(bounds: Aabb, w: usize) -> Self {
         let size = bounds.size();
-        let w = size.max_position();
         let axes @ [_, u, v] = [w, (w + 1) % 3, (w + 2) % 3];
-        // A ray advances by one along the longest edge for each step of its direction.
+        // A ray advances by one along the axis for each step of its direction.
         let mut dir = DVec3::AXES[w];
         dir[u] = LEAN.x * size[u] / size[w];
         dir[v] = LEAN.y * size[v] / size[w];
@@ -45,7 +50,12 @@ impl Beam {
         Self { bounds, axes, fan: Fan { origin, dir: Linear::constant(dir) } }
     }
 
-    /// The area that the rays cross at right angles to the longest edge: with room for those
+    /// The direction of the rays.
+    pub(super) fn dir(&self) -> DVec3 {
+        self.fan.dir.middle
+    }
+
+    /// The area that the rays cross at right angles to that edge: with room for those
     /// that lean into the box from the side.
     pub(super) fn area(&self) -> f64 {
         let [_, u, v] = self.axes;
@@ -72,6 +82,7 @@ impl Beam {
 
 /// Rays near each other, and which lattices they are of.
 pub(super) struct Samples<'a> {
+    pub(super) beam: &'a Beam,
     pub(super) bunch: Bunch<'a>,
     pub(super) replicates: &'a [u8],
 }

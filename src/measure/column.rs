@@ -73,6 +73,7 @@ impl Column {
                 let corners = [[left, edge(row, rows)], [right, edge(row + 1, rows)]];
                 let (fan, places) = (&beam.fan, &self.places[range[0]..range[1]]);
                 Samples {
+                    beam,
                     bunch: Bunch { fan, corners, places },
                     replicates: &self.replicates[range[0]..range[1]],
                 }

@@ -6,8 +6,8 @@ use super::beam::{Beam, Samples};
 use super::estimate::Estimate;
 use super::lattice::{Round, Sampling, Tally, Wanted, rounds};
 use super::spread::student;
-use super::volume::{Sum, estimate, is_nothing, wanted};
-use crate::progress::Progress;
+use super::volume::{Sum, distance, estimate, is_nothing, wanted};
+use crate::progress::Watch;
 use crate::scene::{BunchTracer, Chords, CompileError, CompileOptions, Scene};
 use crate::solid::Solid;
 
@@ -87,9 +87,9 @@ pub fn compare(
     b: &Solid,
     tolerance: f64,
     sampling: &Sampling,
-    progress: Progress<'_>,
+    watch: Watch<'_>,
 ) -> Result<Comparison, CompileError> {
-    compare_with(a, b, tolerance, sampling, &CompileOptions::default(), progress)
+    compare_with(a, b, tolerance, sampling, &CompileOptions::default(), watch)
 }
 
 /// Compares as [`compare`] does two solids that are compiled in another way.
@@ -103,7 +103,7 @@ pub fn compare_with(
     tolerance: f64,
     sampling: &Sampling,
     options: &CompileOptions,
-    progress: Progress<'_>,
+    watch: Watch<'_>,
 ) -> Result<Comparison, CompileError> {
     let scenes = [
         Scene::compile_with(a, options)?,
@@ -118,12 +118,12 @@ pub fn compare_with(
     }
     let beam = Beam::new(bounds);
     let comparison = |round: &Round<Tallies>, rays| {
-        summary(&beam, round, rays, nothing, tolerance, sampling.rel_tol)
+        summary(&beam, round, rays, nothing, tolerance, sampling)
     };
     let (round, rays) = rounds(
-        &beam,
+        std::slice::from_ref(&beam),
         sampling,
-        progress,
+        watch,
         || (scenes.each_ref().map(Scene::bunch_tracer), Vec::new()),
         |(tracers, only_one), samples, tallies| {
             sample(tracers, only_one, samples, tallies);
@@ -131,9 +131,12 @@ pub fn compare_with(
         |round, rays| {
             let (now, lattices) = (comparison(round, rays), round.replicates.len());
             let wanted = |e: &Estimate| {
-                let rel_tol = sampling.rel_tol;
                 let is_known = e.value == 0.0;
-                if is_known { Wanted::Nothing } else { wanted(e, rel_tol, lattices) }
+                if is_known {
+                    Wanted::Nothing
+                } else {
+                    wanted(distance(e, sampling), lattices)
+                }
             };
             let undecided = now.verdict == Verdict::Undecided;
             let undecided =
@@ -216,16 +219,16 @@ fn summary(
     rays: u64,
     nothing: [bool; 4],
     tolerance: f64,
-    rel_tol: f64,
+    sampling: &Sampling,
 ) -> Comparison {
     let [a, b, a_minus_b, b_minus_a] = std::array::from_fn(|i| {
         if nothing[i] {
             Estimate::exact(0.0)
         } else {
-            estimate(beam, round, rays, rel_tol, |t| t.sums[i])
+            estimate(beam, round, rays, sampling, |t| t.sums[i])
         }
     });
-    let difference = estimate(beam, round, rays, rel_tol, |t| t.difference);
+    let difference = estimate(beam, round, rays, sampling, |t| t.difference);
     let allowed = tolerance * a.value.max(b.value);
     let verdict = if difference.interval[1] <= allowed {
         Verdict::Same
@@ -240,7 +243,7 @@ fn summary(
         a_minus_b,
         b_minus_a,
         difference,
-        iou: overlap(beam, round, rays, &difference, rel_tol),
+        iou: overlap(beam, round, rays, &difference, sampling),
         worst: round.replicates.iter().fold(None, |w, t| longer(w, t.worst)),
         verdict,
     }
@@ -253,7 +256,7 @@ fn overlap(
     round: &Round<Tallies>,
     rays: u64,
     difference: &Estimate,
-    rel_tol: f64,
+    sampling: &Sampling,
 ) -> Estimate {
     let ratio = |t: &Tallies| {
         let [a, b, a_minus_b, b_minus_a] = t.sums.map(|s| s.chords.length);
@@ -265,7 +268,7 @@ fn overlap(
     };
     let ratios: Vec<f64> = round.replicates.iter().map(ratio).collect();
     let (value, half_width) = student(&ratios);
-    let union = estimate(beam, round, rays, rel_tol, |t| {
+    let union = estimate(beam, round, rays, sampling, |t| {
         let [a, b, ..] = t.sums;
         let (all, difference) = ([a, b].map(|sum| sum.chords), t.difference.chords);
         let chords = Chords {
@@ -280,6 +283,7 @@ fn overlap(
     } else {
         [(1.0 - difference.interval[1] / union.value).max(0.0), 1.0]
     };
-    let target_met = union.resolved && interval[1] - interval[0] <= 2.0 * rel_tol;
+    let target_met =
+        union.resolved && interval[1] - interval[0] <= 2.0 * sampling.rel_tol;
     Estimate { value, interval, target_met, ..union }
 }

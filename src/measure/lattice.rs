@@ -25,7 +25,7 @@ use super::beam::{Beam, Samples};
 use super::column::{Column, usize_of};
 use super::spread::REPLICATES;
 use crate::lanes::whole;
-use crate::progress::Progress;
+use crate::progress::Watch;
 use crate::sampling::{Fibonacci, hash, unit};
 
 /// The size of the first lattices.
@@ -36,6 +36,8 @@ const FIRST: u64 = 233;
 pub struct Sampling {
     /// The half width of the interval to reach, as a fraction of the value.
     pub rel_tol: f64,
+    /// The same in the units of the value; the wider of the two is enough.
+    pub abs_tol: f64,
     /// No more rays than this, but at least one round of 16 lattices of 233.
     pub max_rays: u64,
     /// No round is begun that would probably end later than this, and one that does is given
@@ -49,7 +51,22 @@ pub struct Sampling {
 impl Default for Sampling {
     /// One part in ten thousand, with at most 2²⁶ rays.
     fn default() -> Self {
-        Self { rel_tol: 1e-4, max_rays: 1 << 26, time_limit: None, seed: 0 }
+        Self { rel_tol: 1e-4, abs_tol: 0.0, max_rays: 1 << 26, time_limit: None, seed: 0 }
+    }
+}
+
+impl Sampling {
+    /// The same with other random numbers for each of several solids that are measured to be
+    /// added up: with the same ones their errors would be alike. The seed has 53 bits at most, as
+    /// many as readers of JSON keep.
+    #[must_use]
+    pub fn for_part(self, number: u64) -> Self {
+        Self { seed: hash(self.seed, &[number]) >> 11, ..self }
+    }
+
+    /// The half width to reach for a value.
+    pub(super) fn allowed(&self, value: f64) -> f64 {
+        (self.rel_tol * value).max(self.abs_tol)
     }
 }
 
@@ -95,10 +112,11 @@ impl Wanted {
 /// reached. Returns the last round that was finished and the number of rays of all that were.
 ///
 /// `scratch` makes what a thread needs, `sample` adds rays to the tallies of their lattices.
+/// A lattice is one of each beam, all of them of the same size.
 pub(super) fn rounds<S, T: Tally>(
-    beam: &Beam,
+    beams: &[Beam],
     sampling: &Sampling,
-    progress: Progress<'_>,
+    watch: Watch<'_>,
     scratch: impl Fn() -> S + Sync + Send,
     sample: impl Fn(&mut S, &Samples<'_>, &mut [T]) + Sync + Send,
     mut wanted: impl FnMut(&Round<T>, u64) -> Wanted,
@@ -112,9 +130,10 @@ pub(super) fn rounds<S, T: Tally>(
     loop {
         let before = start.elapsed();
         let seed = sampling.seed;
-        let found = part(beam, seed, &next, deadline, progress, &scratch, &sample);
+        let found = part(beams, seed, &next, deadline, watch, &scratch, &sample);
         let Some(found) = found else { return (round, rays) };
-        rays += next.rays();
+        let taken = next.rays() * beams.len() as u64;
+        rays += taken;
         if next.is_first() {
             round = Round { replicates: found, size: next.lattice.len() };
         } else {
@@ -124,8 +143,9 @@ pub(super) fn rounds<S, T: Tally>(
         let left = sampling.time_limit.map_or(f64::INFINITY, |limit| {
             limit.saturating_sub(start.elapsed()).as_secs_f64()
         });
-        let most = (left / took * next.rays() as f64)
-            .min(sampling.max_rays.saturating_sub(rays) as f64);
+        let most = (left / took * taken as f64)
+            .min(sampling.max_rays.saturating_sub(rays) as f64)
+            / beams.len() as f64;
         let following = match wanted(&round, rays) {
             Wanted::Nothing => None,
             Wanted::Lattices(count) => next.more(count, most),
@@ -174,22 +194,23 @@ impl Part {
 
 /// Samples a part of a round, unless the deadline comes first.
 fn part<S, T: Tally>(
-    beam: &Beam,
+    beams: &[Beam],
     seed: u64,
     part: &Part,
     deadline: Option<Instant>,
-    progress: Progress<'_>,
+    watch: Watch<'_>,
     scratch: &(impl Fn() -> S + Sync + Send),
     sample: &(impl Fn(&mut S, &Samples<'_>, &mut [T]) + Sync + Send),
 ) -> Option<Vec<T>> {
     let Part { lattice, numbers } = part;
-    let shift = |number: usize| {
-        let part = |axis| unit(hash(seed, &[lattice.len(), number as u64, axis]));
+    let shift = |beam: usize, number: usize| {
+        let part = |axis| {
+            let axis = (2 * beam + axis) as u64;
+            unit(hash(seed, &[lattice.len(), number as u64, axis]))
+        };
         DVec2::new(part(0), part(1))
     };
-    let shifts: Vec<DVec2> = numbers.clone().map(shift).collect();
     let tallies = || -> Vec<T> { numbers.clone().map(|_| T::default()).collect() };
-    let grid @ [columns, _] = beam.grid(part.rays());
     let late = AtomicBool::new(false);
     let is_late = || {
         if deadline.is_some_and(|deadline| Instant::now() > deadline) {
@@ -198,28 +219,34 @@ fn part<S, T: Tally>(
         late.load(Ordering::Relaxed)
     };
     let scratch = || (scratch(), Column::default());
-    let partial = |(scratch, column): &mut (S, Column), number: u64| {
-        let mut tallies = tallies();
-        if is_late() {
-            return tallies;
-        }
-        column.fill(*lattice, &shifts, grid, number);
-        for bunch in column.bunches(beam, grid, number) {
-            if is_late() {
-                break;
-            }
-            sample(scratch, &bunch, &mut tallies);
-        }
-        progress(column.places.len() as u64);
-        tallies
-    };
-    let partials = in_order(columns, &scratch, partial);
-    if late.load(Ordering::Relaxed) {
-        return None;
-    }
     let mut replicates = tallies();
-    for tallies in partials {
-        replicates.iter_mut().zip(tallies).for_each(|(total, part)| total.add(part));
+    for (i, beam) in beams.iter().enumerate() {
+        let shifts: Vec<DVec2> = numbers.clone().map(|number| shift(i, number)).collect();
+        let grid @ [columns, _] = beam.grid(part.rays());
+        let partial = |(scratch, column): &mut (S, Column), number: u64| {
+            let mut tallies = tallies();
+            if is_late() {
+                return tallies;
+            }
+            column.fill(*lattice, &shifts, grid, number);
+            for bunch in column.bunches(beam, grid, number) {
+                if is_late() {
+                    break;
+                }
+                sample(scratch, &bunch, &mut tallies);
+            }
+            if watch(column.places.len() as u64).is_break() {
+                late.store(true, Ordering::Relaxed);
+            }
+            tallies
+        };
+        let partials = in_order(columns, &scratch, partial);
+        if late.load(Ordering::Relaxed) {
+            return None;
+        }
+        for tallies in partials {
+            replicates.iter_mut().zip(tallies).for_each(|(total, part)| total.add(part));
+        }
     }
     Some(replicates)
 }

@@ -5,10 +5,15 @@ mod column;
 mod compare;
 mod estimate;
 mod lattice;
+mod properties;
 mod spread;
 mod volume;
 
 pub use compare::{Comparison, Verdict, Worst, compare, compare_with};
 pub use estimate::{Estimate, Method};
 pub use lattice::Sampling;
+pub use properties::{
+    Body, Mass, MergeError, Principal, Properties, Quantity, Replicate, Run, mass, merge,
+    properties, run,
+};
 pub use volume::{volume, volume_with};

@@ -6,7 +6,7 @@ use super::estimate::{Estimate, Method};
 use super::lattice::{Round, Sampling, Tally, Wanted, rounds};
 use super::spread::{ENOUGH_HITS, most_hits, student};
 use crate::lanes::whole;
-use crate::progress::Progress;
+use crate::progress::{Watch, unwatched};
 use crate::scene::{Chords, Scene};
 
 /// The chords that many rays have in one solid.
@@ -49,23 +49,19 @@ impl Tally for Sum {
 /// # Ok::<(), solidray::CompileError>(())
 /// ```
 pub fn volume(scene: &Scene, sampling: &Sampling) -> Estimate {
-    volume_with(scene, sampling, &|_| {})
+    volume_with(scene, sampling, &unwatched)
 }
 
-/// [`volume`], which tells how it gets on.
-pub fn volume_with(
-    scene: &Scene,
-    sampling: &Sampling,
-    progress: Progress<'_>,
-) -> Estimate {
+/// [`volume`], which tells how it gets on and can be stopped.
+pub fn volume_with(scene: &Scene, sampling: &Sampling, watch: Watch<'_>) -> Estimate {
     if is_nothing(scene) {
         return Estimate::exact(0.0);
     }
     let beam = Beam::new(scene.bounds());
     let (round, rays) = rounds(
-        &beam,
+        std::slice::from_ref(&beam),
         sampling,
-        progress,
+        watch,
         || scene.bunch_tracer(),
         |tracer, samples, sums: &mut [Sum]| {
             tracer.chords(&samples.bunch, |i, chords| {
@@ -75,20 +71,31 @@ pub fn volume_with(
         |round, rays| {
             let hopeless = rays >= sampling.max_rays / PATIENCE
                 && round.replicates.iter().all(|sum| sum.hits == 0);
-            let now = estimate(&beam, round, rays, sampling.rel_tol, |sum| *sum);
+            let now = estimate(&beam, round, rays, sampling, |sum| *sum);
             if hopeless {
                 Wanted::Nothing
             } else {
-                wanted(&now, sampling.rel_tol, round.replicates.len())
+                wanted(distance(&now, sampling), round.replicates.len())
             }
         },
     );
-    estimate(&beam, &round, rays, sampling.rel_tol, |sum| *sum)
+    estimate(&beam, &round, rays, sampling, |sum| *sum)
 }
 
-/// What an estimate from some lattices takes to meet its target. The error falls like the
-/// square root of their number, and like their size to some power between 1 and 1½.
-pub(super) fn wanted(estimate: &Estimate, rel_tol: f64, lattices: usize) -> Wanted {
+/// How many times as wide as it should be the interval is; no number where there is no telling.
+pub(super) fn distance(estimate: &Estimate, sampling: &Sampling) -> f64 {
+    if estimate.target_met {
+        0.0
+    } else if estimate.resolved {
+        estimate.half_width() / sampling.allowed(estimate.value)
+    } else {
+        f64::NAN
+    }
+}
+
+/// What it takes to make an interval from some lattices narrower by a factor. The error falls
+/// like the square root of their number, and like their size to some power between 1 and 1½.
+pub(super) fn wanted(ratio: f64, lattices: usize) -> Wanted {
     /// With more than these larger ones are cheaper.
     const MOST: f64 = 64.0;
     /// Bounds for what the spread of a small round can promise.
@@ -96,11 +103,10 @@ pub(super) fn wanted(estimate: &Estimate, rel_tol: f64, lattices: usize) -> Want
     /// Where it promises nothing.
     const UNKNOWN: f64 = 4.0;
     const POWER: f64 = 1.5;
-    let ratio = estimate.half_width() / (rel_tol * estimate.value);
     let count = lattices as f64 * ratio * ratio;
-    if estimate.target_met {
+    if ratio <= 1.0 {
         Wanted::Nothing
-    } else if !estimate.resolved || !ratio.is_finite() {
+    } else if !ratio.is_finite() {
         Wanted::Larger(UNKNOWN)
     } else if count <= MOST {
         Wanted::Lattices(usize_of(whole(count.ceil())).max(lattices + 1))
@@ -112,7 +118,7 @@ pub(super) fn wanted(estimate: &Estimate, rel_tol: f64, lattices: usize) -> Want
 
 /// When no ray has met the solid after this part of the allowed rays, it is given up: the
 /// bound would only become a little smaller.
-const PATIENCE: u64 = 16;
+pub(super) const PATIENCE: u64 = 16;
 
 /// Whether the bounds alone say that there is no volume.
 pub(super) fn is_nothing(scene: &Scene) -> bool {
@@ -124,7 +130,7 @@ pub(super) fn estimate<T>(
     beam: &Beam,
     round: &Round<T>,
     rays: u64,
-    rel_tol: f64,
+    sampling: &Sampling,
     sum: impl Fn(&T) -> Sum,
 ) -> Estimate {
     let whole_box = beam.depth() * beam.area();
@@ -151,7 +157,7 @@ pub(super) fn estimate<T>(
         let bound = beam.depth() * per_ray * hits / sums.len() as f64;
         [0.0, bound.min(whole_box)]
     };
-    let target_met = resolved && half_width <= rel_tol * value;
+    let target_met = resolved && half_width <= sampling.allowed(value);
     let count = |of: fn(&Chords) -> u64| sums.iter().map(|s| of(&s.chords)).sum();
     Estimate {
         value,

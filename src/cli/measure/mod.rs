@@ -1,0 +1,226 @@
+//! `solidray measure` and `solidray merge`
+
+mod json;
+mod merge;
+mod text;
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::bail;
+use clap::Args;
+use solidray::measure::{self, Run, Sampling};
+use solidray::{Part, Scene, Solid};
+
+use super::input::Reading;
+use super::interrupt;
+use super::meter::Meter;
+use super::sampling::SamplingArgs;
+use super::{Answer, Global, output};
+use json::{PartJson, Report};
+pub(super) use merge::Merge;
+
+/// Measure volume, surface, centroid, inertia and mass, each with a 95 % interval
+///
+/// Lattices of rays along three axes are made larger until all intervals are as narrow as
+/// asked: those of volume, surface and inertia as a fraction of the value, that of the
+/// centroid as a fraction of the radius of gyration. Names and colours of the model are
+/// parts, measured each by itself in its own bounds. Ctrl-C ends with the best answer so far.
+#[derive(Args, Debug)]
+pub(super) struct Measure {
+    /// The model
+    file: PathBuf,
+    /// The mass of a cubic unit, of everything or of one part by its name or colour; may be
+    /// given several times, as in --density 1e-3 --density screw=7.85e-3 --density '#ff0000=2e-3'
+    #[arg(long, value_name = "[PART=]D", value_parser = density)]
+    density: Vec<Density>,
+    /// Measure with this many seeds, beginning with --seed, and combine them; the same numbers as
+    /// from `merge` of runs with one of them each
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=1_000_000), help_heading = "Sampling")]
+    seeds: u64,
+    #[command(flatten)]
+    sampling: SamplingArgs,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+/// A density, and of which part.
+#[derive(Clone, Debug, PartialEq)]
+struct Density {
+    part: Option<String>,
+    value: f64,
+}
+
+fn density(text: &str) -> Result<Density, String> {
+    let (part, number) = match text.rsplit_once('=') {
+        Some((part, number)) => (Some(part.to_owned()), number),
+        None => (None, text),
+    };
+    match number.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(Density { part, value }),
+        Ok(_) | Err(_) => {
+            Err(format!("`{number}` is not a finite density of at least 0"))
+        }
+    }
+}
+
+/// What a part is called in reports and in `--density`: its name, or else its colour.
+fn label(part: &Part) -> String {
+    if let Some(name) = &part.name {
+        return name.to_string();
+    }
+    let Some(color) = part.color else { return "other".to_owned() };
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "it is rounded and between 0 and 255"
+    )]
+    let [r, g, b, a] = color.rgba.map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8);
+    if a == 255 {
+        format!("#{r:02x}{g:02x}{b:02x}")
+    } else {
+        format!("#{r:02x}{g:02x}{b:02x}{a:02x}")
+    }
+}
+
+impl Measure {
+    pub(super) fn run(
+        &self,
+        global: Global,
+        out: &mut dyn Write,
+    ) -> anyhow::Result<Answer> {
+        let start = Instant::now();
+        let solid = self.reading.read(&self.file, global)?.solid;
+        let scene = self.reading.compile(&self.file, &solid)?;
+        let parts = solid.parts();
+        let densities = self.densities(&parts)?;
+        let interrupted = interrupt::watched()?;
+        let meter = Meter::new(global, "measuring", None);
+        let watch = |rays| {
+            meter.tick(rays);
+            interrupt::flow(interrupted)
+        };
+        let sampling = self.sampling.meant();
+        let seeds = sampling.seed..sampling.seed.saturating_add(self.seeds);
+        let runs = |scene: &Scene, sampling: &dyn Fn(u64) -> Sampling| {
+            let mut runs: Vec<Run> = Vec::new();
+            for seed in seeds.clone() {
+                if !runs.is_empty() && interrupted() {
+                    break;
+                }
+                runs.push(measure::run(scene, &sampling(seed), &watch));
+            }
+            runs
+        };
+        let whole = runs(&scene, &|seed| Sampling { seed, ..sampling });
+        let mut pieces = Vec::new();
+        if parts.len() > 1 {
+            for (number, (_, solid)) in (1..).zip(&parts) {
+                let scene = self.reading.compile(&self.file, solid)?;
+                let each = |seed| Sampling { seed, ..sampling }.for_part(number);
+                pieces.push(runs(&scene, &each));
+            }
+        }
+        drop(meter);
+        let density = |i: usize| densities.as_ref().map(|d| d[i]);
+        let whole_density = if parts.len() > 1 { None } else { density(0) };
+        let mut report = Report {
+            file: self.file.display().to_string(),
+            whole: PartJson::new(None, whole_density, &whole),
+            parts: (0..pieces.len())
+                .map(|i| PartJson::new(Some(&parts[i].0), density(i), &pieces[i]))
+                .collect(),
+            rel_tol: sampling.rel_tol,
+            abs_tol: sampling.abs_tol,
+            seconds: start.elapsed().as_secs_f64(),
+            interrupted: interrupted(),
+            mass: None,
+        };
+        report.sum_up()?;
+        answer(&report, global, out)
+    }
+
+    /// The density of each part, if any was given.
+    fn densities(&self, parts: &[(Part, Solid)]) -> anyhow::Result<Option<Vec<f64>>> {
+        let labels: Vec<String> = parts.iter().map(|(part, _)| label(part)).collect();
+        let known = || labels.join(", ");
+        for Density { part, .. } in &self.density {
+            if let Some(part) = part
+                && !labels.contains(part)
+            {
+                bail!("--density: there is no part `{part}`; there are: {}", known());
+            }
+        }
+        if self.density.is_empty() {
+            return Ok(None);
+        }
+        let of = |label: &String| {
+            let named = self.density.iter().rfind(|d| d.part.as_ref() == Some(label));
+            let all = self.density.iter().rfind(|d| d.part.is_none());
+            named.or(all).map(|density| density.value)
+        };
+        let found: Option<Vec<f64>> = labels.iter().map(of).collect();
+        match found {
+            Some(found) => Ok(Some(found)),
+            None => bail!(
+                "--density: some part has none; give one for all others, as in --density 1e-3; there are: {}",
+                known()
+            ),
+        }
+    }
+}
+
+/// Prints what was found.
+fn answer(
+    report: &Report,
+    global: Global,
+    out: &mut dyn Write,
+) -> anyhow::Result<Answer> {
+    if global.json {
+        output::json(out, report)?;
+        return Ok(Answer::Yes);
+    }
+    text::print(report, global, out)?;
+    if global.quiet {
+        return Ok(Answer::Yes);
+    }
+    if report.interrupted {
+        super::report::note("interrupted: these are the numbers found so far");
+    } else if !report.target_met() {
+        super::report::note(&format!(
+            "the relative tolerance {:e} was not met everywhere: allow more with --max-rays or --time-limit",
+            report.rel_tol
+        ));
+    }
+    Ok(Answer::Yes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use solidray::Color;
+
+    #[test]
+    fn densities_may_name_a_part() {
+        let all = Density { part: None, value: 0.5 };
+        assert_eq!(density("0.5"), Ok(all));
+        let one = Density { part: Some("a=b".to_owned()), value: 2.0 };
+        assert_eq!(density("a=b=2"), Ok(one));
+        assert!(
+            density("a=-1").is_err() && density("x").is_err() && density("").is_err()
+        );
+    }
+
+    #[test]
+    fn colors_are_labels_of_parts_without_names() {
+        let red = Part { name: None, color: Some(Color::rgb(1.0, 0.0, 0.0)) };
+        assert_eq!(label(&red), "#ff0000");
+        let named = Part { name: Some("lid".into()), ..red };
+        assert_eq!(label(&named), "lid");
+        let clear =
+            Part { name: None, color: Some(Color { rgba: [0.0, 0.0, 1.0, 0.5] }) };
+        assert_eq!(label(&clear), "#0000ff80");
+        assert_eq!(label(&Part::default()), "other");
+    }
+}

@@ -1,0 +1,202 @@
+//! What the rays of one seed find: sums over chords and their ends.
+//!
+//! Three beams look along the three axes, all but. Each gives the integrals over the solid,
+//! and their mean counts. A piece of the surface is met by each beam in proportion to how
+//! squarely it faces it; every crossing is divided by the sum of the three, which is nowhere
+//! zero, so the sum over all crossings is the area, whichever way the surface faces: a
+//! variant of the formulas of Cauchy and Crofton whose weights are bounded (one beam alone
+//! would have weights without bound, and would miss faces along it).
+
+use glam::DVec3;
+
+use super::integrals::{COUNT, Integrals};
+use super::summary;
+use crate::aabb::Aabb;
+use crate::measure::beam::{Beam, Samples};
+use crate::measure::lattice::{Round, Sampling, Tally, Wanted, rounds};
+use crate::measure::volume::{PATIENCE, is_nothing, wanted};
+use crate::progress::Watch;
+use crate::ray::Ray;
+use crate::scene::{Scene, Tracer};
+
+/// What the rays of one seed found: all that it takes to combine it with what other seeds
+/// found, on other machines perhaps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Which random shifts.
+    pub seed: u64,
+    /// The box that the rays covered. Coordinates count from its middle.
+    pub bounds: Aabb,
+    /// How many rays each beam of a lattice has; none if there is nothing to measure or no
+    /// round was finished in time.
+    pub lattice: u64,
+    /// How many rays were spent, those of earlier rounds included.
+    pub rays: u64,
+    /// What each lattice found.
+    pub replicates: Vec<Replicate>,
+    /// A box around all ends of chords.
+    pub reached: Aabb,
+}
+
+/// What one lattice of rays found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Replicate {
+    /// Estimates of the integrals over the solid of 1, x, y, z, x², y², z², xy, yz, zx, and of the
+    /// area.
+    pub integrals: [f64; COUNT],
+    /// How many rays met the solid.
+    pub hits: u64,
+    /// How many stretches they had inside it.
+    pub spans: u64,
+    /// How many of these, and of gaps, are shorter than rounding.
+    pub uncertain: u64,
+}
+
+impl Run {
+    /// Whether the bounds alone say that there is nothing.
+    pub(super) fn is_nothing(&self) -> bool {
+        self.bounds.size().min_element() == 0.0
+    }
+
+    /// Whether it can have come from [`run`].
+    pub(super) fn is_complete(&self) -> bool {
+        let is_unfinished = self.replicates.is_empty() && self.lattice == 0;
+        let all_finite =
+            || self.replicates.iter().flat_map(|r| r.integrals).all(f64::is_finite);
+        is_unfinished || (self.lattice > 0 && self.replicates.len() >= 16 && all_finite())
+    }
+}
+
+/// What [`properties`] has found so far, so that it can be combined with what other seeds find.
+pub fn run(scene: &Scene, sampling: &Sampling, watch: Watch<'_>) -> Run {
+    let bounds = scene.bounds();
+    let run = Run {
+        seed: sampling.seed,
+        bounds,
+        lattice: 0,
+        rays: 0,
+        replicates: Vec::new(),
+        reached: Aabb::EMPTY,
+    };
+    if is_nothing(scene) {
+        return run;
+    }
+    let beams = [0, 1, 2].map(|axis| Beam::along(bounds, axis));
+    let look = Look { scene, beams: &beams, center: bounds.center() };
+    let (round, rays) = rounds(
+        &beams,
+        sampling,
+        watch,
+        || scene.bunch_tracer(),
+        |tracer, samples, tallies: &mut [Found]| {
+            tracer.spans(&samples.bunch, |i, ray, tracer| {
+                let tally = &mut tallies[usize::from(samples.replicates[i])];
+                look.add(samples, ray, tracer, tally);
+            });
+        },
+        |round, rays| {
+            let now = Run { rays, ..round_of(&run, round) };
+            let hopeless = rays >= sampling.max_rays / PATIENCE
+                && now.replicates.iter().all(|r| r.hits == 0);
+            if hopeless {
+                Wanted::Nothing
+            } else {
+                let now = summary(std::slice::from_ref(&now), sampling);
+                wanted(now.distance(), round.replicates.len())
+            }
+        },
+    );
+    Run { rays, ..round_of(&run, &round) }
+}
+
+/// What a round has found.
+fn round_of(run: &Run, round: &Round<Found>) -> Run {
+    let replicate = |found: &Found| {
+        let per_ray = 1.0 / round.size as f64;
+        let Found { integrals, hits, spans, uncertain, .. } = *found;
+        let integrals = integrals.scaled(per_ray, per_ray).0;
+        Replicate { integrals, hits, spans, uncertain }
+    };
+    let reached = round.replicates.iter().fold(Aabb::EMPTY, |b, f| b.hull(f.reached.0));
+    let replicates = if round.size == 0 { &[] } else { &round.replicates[..] };
+    Run {
+        lattice: round.size,
+        replicates: replicates.iter().map(replicate).collect(),
+        reached,
+        ..run.clone()
+    }
+}
+
+/// How rays are looked at.
+struct Look<'a> {
+    scene: &'a Scene,
+    beams: &'a [Beam; 3],
+    center: DVec3,
+}
+
+impl Look<'_> {
+    /// Adds what a ray has found. A beam stands for a third of the volume, and for its part of each
+    /// piece of the surface.
+    fn add(
+        &self,
+        samples: &Samples<'_>,
+        ray: &Ray,
+        tracer: &Tracer<'_>,
+        found: &mut Found,
+    ) {
+        let spans = tracer.spans_found();
+        let mut along = Integrals::default();
+        for span in spans {
+            let begin = ray.at(span.enter.t);
+            along.add_chord(begin - self.center, ray.dir, span.length());
+            found.reached.add(begin);
+            found.reached.add(ray.at(span.exit.t));
+            for crossing in [&span.enter, &span.exit] {
+                let normal = self.scene.normal_at(ray, crossing);
+                let seen = |beam: &Beam| (normal.dot(beam.dir()) / beam.area()).abs();
+                let [x, y, z] = self.beams.each_ref().map(seen);
+                along.add_area(1.0 / (x + y + z));
+            }
+        }
+        found.integrals.add(&along.scaled(samples.beam.area() / 3.0, 1.0));
+        found.hits += u64::from(!spans.is_empty());
+        found.spans += spans.len() as u64;
+        found.uncertain += tracer.uncertain(ray);
+    }
+}
+
+/// What the rays of one lattice have found.
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    integrals: Integrals,
+    hits: u64,
+    spans: u64,
+    uncertain: u64,
+    reached: Reached,
+}
+
+/// A box around points, empty at first.
+#[derive(Clone, Copy, Debug)]
+struct Reached(Aabb);
+
+impl Default for Reached {
+    fn default() -> Self {
+        Self(Aabb::EMPTY)
+    }
+}
+
+impl Reached {
+    fn add(&mut self, point: DVec3) {
+        self.0 = self.0.hull(Aabb::new(point, point));
+    }
+}
+
+impl Tally for Found {
+    fn add(&mut self, later: Self) {
+        self.integrals.add(&later.integrals);
+        self.hits += later.hits;
+        self.spans += later.spans;
+        self.uncertain += later.uncertain;
+        self.reached.0 = self.reached.0.hull(later.reached.0);
+    }
+}

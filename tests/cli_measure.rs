@@ -1,0 +1,166 @@
+//! `measure` and `merge` as their users meet them.
+#![cfg(feature = "cli")]
+#![expect(clippy::float_cmp, reason = "these numbers are equal to the bit")]
+
+mod desk;
+
+use desk::Desk;
+use serde_json::Value;
+
+/// A steel ball and a lighter cube beside it, and a plain cube that both leave alone.
+const PARTS: &str = "group() {
+color([1, 0, 0, 1]) { sphere($fn = 0, $fa = 12, $fs = 2, r = 3); }
+color([0, 0, 1, 1]) {
+multmatrix([[1, 0, 0, 10], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { cube(size = [2, 2, 2], center = true); }
+}
+multmatrix([[1, 0, 0, 20], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { cube(size = [1, 1, 1], center = true); }
+}
+";
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).expect(text)
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+#[test]
+fn measure_says_what_a_ball_is() {
+    let desk = Desk::new();
+    let done = desk.run(&["measure", "ball.csg", "--rel-tol", "1e-3", "--density", "2"]);
+    assert_eq!((done.code, &*done.err), (0, ""));
+    for line in ["volume     113.", "surface    113.", "centroid ", "mass       226."] {
+        assert!(done.out.contains(line), "{line} {}", done.out);
+    }
+    let done = desk.run(&[
+        "measure",
+        "ball.csg",
+        "--rel-tol",
+        "1e-3",
+        "--density",
+        "2",
+        "--json",
+    ]);
+    let found = json(&done.out);
+    let whole = &found["whole"]["properties"];
+    let truth = 36.0 * std::f64::consts::PI;
+    assert!((number(&whole["volume"]["value"]) - truth).abs() < 3e-3 * truth);
+    assert!((number(&whole["area"]["value"]) - truth).abs() < 3e-3 * truth);
+    assert_eq!(whole["target_met"], true);
+    let mass = number(&found["mass"]["mass"]["value"]);
+    assert_eq!(mass, 2.0 * number(&whole["volume"]["value"]));
+    assert_eq!(found["parts"], json("[]"));
+}
+
+#[test]
+fn parts_are_measured_each_with_its_density() {
+    let desk = Desk::new();
+    desk.put("parts.csg", PARTS);
+    let densities = ["--density", "1", "--density", "#ff0000=7.85"];
+    let mut args = vec!["measure", "parts.csg", "--rel-tol", "1e-3", "--json"];
+    args.extend(densities);
+    let found = json(&desk.run(&args).out);
+    let names = [0, 1, 2].map(|i| found["parts"][i]["name"].clone());
+    assert_eq!(names, ["#ff0000", "#0000ff", "other"]);
+    let ball = 36.0 * std::f64::consts::PI;
+    let mass = 7.85 * ball + 8.0 + 1.0;
+    assert!((number(&found["mass"]["mass"]["value"]) - mass).abs() < 3e-3 * mass);
+    let middle = (80.0 + 20.0) / mass;
+    let x = number(&found["mass"]["body"]["centroid"][0]["value"]);
+    assert!((x - middle).abs() < 0.01, "{x} {middle}");
+    // A part without a density, and a density without a part.
+    let done = desk.run(&["measure", "parts.csg", "--density", "#ff0000=1"]);
+    assert_eq!(done.code, 2);
+    assert!(done.err.contains("some part has none"), "{}", done.err);
+    let done = desk.run(&["measure", "parts.csg", "--density", "lid=1"]);
+    assert!(done.err.contains("no part `lid`; there are: #ff0000"), "{}", done.err);
+    // What is in two parts is said to be.
+    desk.put(
+        "both.csg",
+        "color([1, 0, 0, 1]) { cube(size = 2, center = true); }
+        color([0, 1, 0, 1]) { cube(size = 1, center = true); }",
+    );
+    let done = desk.run(&["measure", "both.csg", "--rel-tol", "1e-3"]);
+    assert!(done.out.contains("they overlap: "), "{}", done.out);
+}
+
+#[test]
+fn merged_runs_have_the_bits_of_one_run() {
+    let desk = Desk::new();
+    desk.put("parts.csg", PARTS);
+    let tolerance = ["--rel-tol", "3e-3", "--density", "0.3", "--json"];
+    let mut files = Vec::new();
+    for seed in ["5", "6", "7"] {
+        let mut args = vec!["measure", "parts.csg", "--seed", seed];
+        args.extend(tolerance);
+        desk.put(&format!("{seed}.json"), &desk.run(&args).out);
+        files.push(format!("{seed}.json"));
+    }
+    let mut args = vec!["measure", "parts.csg", "--seed", "5", "--seeds", "3"];
+    args.extend(tolerance);
+    let one = json(&desk.run(&args).out);
+    let merged = desk.run(&["merge", "7.json", "5.json", "6.json", "--json"]);
+    assert_eq!(merged.code, 0, "{}", merged.err);
+    let merged = json(&merged.out);
+    assert_eq!(merged["mass"], one["mass"]);
+    assert_eq!(merged["whole"]["properties"], one["whole"]["properties"]);
+    for i in 0..3 {
+        assert_eq!(merged["parts"][i]["properties"], one["parts"][i]["properties"]);
+    }
+    // What was merged can be merged again.
+    desk.put("57.json", &desk.run(&["merge", "7.json", "5.json", "--json"]).out);
+    let again = json(&desk.run(&["merge", "57.json", "6.json", "--json"]).out);
+    assert_eq!(again["mass"], one["mass"]);
+    let text = desk.run(&["merge", "5.json", "6.json"]);
+    assert!(text.out.starts_with("volume     122."), "{}", text.out);
+}
+
+#[test]
+fn what_cannot_be_merged_is_said_to_be() {
+    let desk = Desk::new();
+    let measured = |file, seed| {
+        desk.run(&["measure", file, "--rel-tol", "1e-2", "--seed", seed, "--json"]).out
+    };
+    desk.put("a.json", &measured("ball.csg", "1"));
+    desk.put("tube.json", &measured("tube.csg", "2"));
+    desk.put("volume.json", &desk.run(&["volume", "ball.csg", "--json"]).out);
+    let fails = |files: &[&str], with: &str| {
+        let done = desk.run(&[&["merge"], files].concat());
+        assert!(done.code == 2 && done.err.contains(with), "{} {}", done.code, done.err);
+    };
+    fails(&["a.json", "a.json"], "the same seed 1");
+    fails(&["a.json", "tube.json"], "different solids");
+    fails(&["volume.json"], "volume.json: it is not what `measure --json` prints");
+    fails(&["ball.csg"], "ball.csg: it is not what `measure --json` prints");
+    fails(&["none.json"], "none.json");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_with_the_numbers_found_so_far() {
+    use std::process::{Command, Stdio};
+    let desk = Desk::new();
+    for command in ["measure", "volume"] {
+        let child = Command::new(env!("CARGO_BIN_EXE_solidray"))
+            .args([command, "tube.csg", "--rel-tol", "1e-12", "--json"])
+            .args(["--max-rays", "1000000000000"])
+            .current_dir(desk.path(""))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        std::thread::sleep(std::time::Duration::from_millis(1500));
+        let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        assert!(kill.expect("there is such a program").success());
+        let output = child.wait_with_output().expect("it ends");
+        assert!(output.status.success(), "{output:?}");
+        let found = json(&String::from_utf8(output.stdout).expect("text"));
+        let volume = match command {
+            "measure" => &found["whole"]["properties"]["volume"],
+            _ => &found,
+        };
+        assert!((number(&volume["value"]) - 160.0 * std::f64::consts::PI).abs() < 1.0);
+        assert_eq!(volume["target_met"], false);
+    }
+}
