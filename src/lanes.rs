@@ -36,6 +36,8 @@ pub(crate) trait Lanes:
     fn equal(self, other: Self) -> Self::Mask;
     /// For each ray `yes` or `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// Whether it is true of one ray.
+    fn any(mask: Self::Mask) -> bool;
     /// The power of two that brings a positive number into 1..2, or as near as one factor
     /// goes for denormal numbers and those above 2¹⁰²³, infinity among them.
     fn inverse_power_of_two(self) -> Self;
@@ -103,6 +105,11 @@ impl Lanes for f64 {
     }
 
     #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+
+    #[inline(always)]
     fn inverse_power_of_two(self) -> Self {
         // The field of 2⁻ᵉ is 2 BIAS minus that of 2ᵉ; both ends of its range are taken by
         // other kinds of numbers.
@@ -160,14 +167,6 @@ impl<S: Simd> Not for Truths<S> {
     }
 }
 
-impl<S: Simd> Truths<S> {
-    /// Whether it is true of one ray.
-    #[inline(always)]
-    pub(crate) fn any(self) -> bool {
-        self.0.first_true_m64s(self.1) < S::F64_LANES
-    }
-}
-
 impl<S: Simd> Lanes for Vector<S> {
     type Mask = Truths<S>;
 
@@ -200,6 +199,11 @@ impl<S: Simd> Lanes for Vector<S> {
     #[inline(always)]
     fn select(mask: Truths<S>, yes: Self, no: Self) -> Self {
         Self(yes.0, yes.0.select_f64s(mask.1, yes.1, no.1))
+    }
+
+    #[inline(always)]
+    fn any(mask: Truths<S>) -> bool {
+        mask.0.first_true_m64s(mask.1) < S::F64_LANES
     }
 
     #[inline(always)]

@@ -47,7 +47,7 @@ pub(crate) use line::{Line, Lines, Rays, Stage, inverse_power_of_two};
 pub(crate) use pack::{Kept, Linear, Pack, View};
 use place::Frame;
 pub(crate) use place::{ToLocal, inverse};
-pub(crate) use plane::Plane;
+pub(crate) use plane::{Keeps, Plane};
 pub(crate) use point::{Beside, Equation};
 pub(crate) use polyhedron::{IndexedMesh, Polyhedron};
 pub use primitive::{BadParameter, Primitive, Profile};
@@ -205,6 +205,19 @@ impl Shape {
             Self::HalfSpace(leaf) => &mut leaf.planes,
             Self::Quadric(leaf) => leaf.planes.as_mut().map_or(&mut [], |p| p),
             Self::Polyhedron(_) => &mut [],
+        }
+    }
+
+    /// The planes and the curved wall of a leaf that is inside of all of them; the number of
+    /// the first plane's face is that of the wall and one more, or zero.
+    pub(crate) fn sides(&self) -> (&[Plane], Option<&Wall>) {
+        match self {
+            Self::Cuboid(leaf) => (&leaf.planes, None),
+            Self::HalfSpace(leaf) => (&leaf.planes, None),
+            Self::Quadric(leaf) => {
+                (leaf.planes.as_ref().map_or(&[], |p| p), Some(&leaf.wall))
+            }
+            Self::Polyhedron(_) => (&[], None),
         }
     }
 

@@ -19,6 +19,18 @@ pub(crate) struct Plane {
     pub(crate) above: bool,
 }
 
+/// What the inner side of a plane leaves of lines that are not all on one side of it, or of
+/// those along it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Keeps {
+    /// What comes before the plane.
+    Before,
+    /// What comes after it.
+    After,
+    /// All of a line that is on the inner side, and nothing of others.
+    AllOrNothing,
+}
+
 impl Plane {
     /// The inner side of a plane of a leaf: `outward · p = offset` in the leaf's frame, where
     /// `point` is a point on it.
@@ -94,12 +106,10 @@ impl Plane {
     /// solids on the two sides of a plane share such lines out.
     #[inline(always)]
     fn inside<L: Lanes>(&self, rays: &Rays<L>, speed: L) -> [L; 2] {
-        let Rays { origin, rest, .. } = *rays;
-        let like = origin.x;
+        let like = rays.origin.x;
         let (never, always) = (like.same(f64::INFINITY), like.same(f64::NEG_INFINITY));
         let zero = like.same(0.0);
-        let normal = Vec3::same(like, self.normal);
-        let to_plane = (like.same(self.offset) - normal.dot(origin)) - normal.dot(rest);
+        let to_plane = self.height(rays);
         let (parallel, rising) = (speed.equal(zero), zero.less(speed));
         let is_above = !zero.less(to_plane);
         let t = to_plane / speed;
@@ -109,6 +119,31 @@ impl Plane {
         let from = L::select(goes_in & !parallel, t, always);
         let to = L::select(goes_in | parallel, never, t);
         [L::select(none, never, from), L::select(none, always, to)]
+    }
+
+    /// How far the plane is above the origins of lines, in lengths of the normal.
+    #[inline(always)]
+    pub(crate) fn height<L: Lanes>(&self, rays: &Rays<L>) -> L {
+        let Rays { origin, rest, .. } = *rays;
+        let normal = Vec3::same(origin.x, self.normal);
+        (origin.x.same(self.offset) - normal.dot(origin)) - normal.dot(rest)
+    }
+
+    /// The same of a plane square to an axis, from the coordinates along it.
+    #[inline(always)]
+    pub(crate) fn height_along_axis<L: Lanes>(&self, origin: L, rest: L) -> L {
+        (origin.same(self.offset) - origin) - rest
+    }
+
+    /// What it leaves of lines that rise above it at one speed.
+    pub(crate) fn keeps(&self, speed: f64) -> Keeps {
+        if speed == 0.0 {
+            Keeps::AllOrNothing
+        } else if (speed > 0.0) == self.above {
+            Keeps::After
+        } else {
+            Keeps::Before
+        }
     }
 
     /// The stretches of lines on the inner side of all planes whose bits are `wanted`, the
@@ -132,7 +167,7 @@ impl Plane {
 
     /// How fast lines rise above the plane, in lengths of the normal.
     #[inline(always)]
-    pub(super) fn speed<L: Lanes>(&self, dir: Vec3<L>) -> L {
+    pub(crate) fn speed<L: Lanes>(&self, dir: Vec3<L>) -> L {
         Vec3::same(dir.x, self.normal).dot(dir)
     }
 }

@@ -56,7 +56,7 @@ impl Wall {
 
     /// Where `q ≤ 0` on lines: one or two stretches of each, perhaps infinite, perhaps empty.
     #[inline(always)]
-    pub(super) fn inside<L: Lanes>(
+    pub(crate) fn inside<L: Lanes>(
         &self,
         rays: &Rays<L>,
         course: &Course<L>,
@@ -86,12 +86,14 @@ impl Wall {
             return [[from, to], [never, always]];
         }
         let linear = a.equal(zero);
-        let root = (moved - like.same(0.5) * c / b) * step;
-        let holds = !balanced | c.less(zero);
-        from = L::select(linear, L::select(falls, root, always), from);
-        from = L::select(linear & !holds, never, from);
-        to = L::select(linear, L::select(zero.less(b), root, never), to);
-        to = L::select(linear & !holds, always, to);
+        if L::any(linear) {
+            let root = (moved - like.same(0.5) * c / b) * step;
+            let holds = !balanced | c.less(zero);
+            from = L::select(linear, L::select(falls, root, always), from);
+            from = L::select(linear & !holds, never, from);
+            to = L::select(linear, L::select(zero.less(b), root, never), to);
+            to = L::select(linear & !holds, always, to);
+        }
         if !self.profile.can_be_left_twice() {
             return [[from, to], [never, always]];
         }
@@ -104,7 +106,7 @@ impl Wall {
 
     /// What depends on the direction of lines alone.
     #[inline(always)]
-    pub(super) fn course<L: Lanes>(&self, dir: Vec3<L>) -> Course<L> {
+    pub(crate) fn course<L: Lanes>(&self, dir: Vec3<L>) -> Course<L> {
         let dir = dir.mapped(&self.to_local.linear);
         // Where the scene is far larger than the leaf, squares of steps are no numbers.
         let step = dir.largest().inverse_power_of_two();

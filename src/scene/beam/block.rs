@@ -102,6 +102,11 @@ impl Block {
         self.common_dir.is_some()
     }
 
+    /// The direction of the lines, if all have the same.
+    pub(super) fn common_dir(&self) -> Option<DVec3> {
+        self.common_dir
+    }
+
     /// A place on one of the lines as a place on its ray.
     pub(super) fn on_ray(&self, i: usize, t: f64) -> f64 {
         (self.offset[i] + t) * self.scale[i]
@@ -255,8 +260,9 @@ pub(super) fn is_wanted<S: Simd>(wanted: u64, i: usize) -> bool {
 }
 
 impl Block {
+    /// The lines of packet `i`, and their direction if all have the same.
     #[inline(always)]
-    fn rays<S: Simd>(
+    pub(super) fn rays<S: Simd>(
         &self,
         simd: S,
         i: usize,
@@ -274,6 +280,17 @@ impl Block {
 }
 
 impl Block {
+    /// Where the lines of packet `i` begin along an axis: origin and rest.
+    #[inline(always)]
+    pub(super) fn coordinates<S: Simd>(
+        &self,
+        simd: S,
+        i: usize,
+        axis: usize,
+    ) -> (Vector<S>, Vector<S>) {
+        (load(simd, &self.origin[axis], i), load(simd, &self.rest[axis], i))
+    }
+
     /// Places on the lines of packet `i` as places on their rays.
     #[inline(always)]
     pub(super) fn places_on_rays<S: Simd>(
@@ -317,7 +334,7 @@ pub(super) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
 
 /// Zero for all rays of a packet.
 #[inline(always)]
-fn zero<S: Simd>(simd: S) -> Vector<S> {
+pub(super) fn zero<S: Simd>(simd: S) -> Vector<S> {
     Vector(simd, simd.splat_f64s(0.0))
 }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use pulp::Arch;
 
 use super::block::{BLOCK, Block};
-use super::flat::Lengths;
+use super::chord::Lengths;
 use super::packet::Packet;
 use super::sight::Sight;
 use super::survey::{List, Survey};
@@ -58,7 +58,8 @@ impl<'a> BunchTracer<'a> {
             return;
         };
         for (first, places) in blocks(bunch.places) {
-            let mut open = self.meet(bunch.fan, places);
+            let mut open = self.make_lines(bunch.fan, places);
+            self.packet.meet(self.scene, &self.block, open);
             while let Some(i) = next(&mut open) {
                 let ray = bunch.fan.ray(places[i][0], places[i][1]);
                 self.walk(i, sight.depth);
@@ -80,10 +81,11 @@ impl<'a> BunchTracer<'a> {
         let slowest = slowest(bunch);
         let thin = self.scene.longest_thin(sight.reach) / (slowest * slowest);
         for (first, places) in blocks(bunch.places) {
-            let wanted = self.meet(bunch.fan, places);
-            let lengths = self.packet.lengths(&self.block, wanted, sight.depth);
+            let wanted = self.make_lines(bunch.fan, places);
+            let lengths =
+                self.packet.lengths(self.scene, &self.block, wanted, sight.depth);
             let mut doubt = wanted;
-            if let Some(Lengths { length, count, thinnest }) = lengths {
+            if let Some(Lengths { length, count, thinnest, .. }) = lengths {
                 let mut open = wanted;
                 while let Some(i) = next(&mut open) {
                     if thinnest[i] > thin {
@@ -92,6 +94,9 @@ impl<'a> BunchTracer<'a> {
                         visit(first + i, Chords { length, spans, uncertain: 0 });
                     }
                 }
+            }
+            if doubt != 0 {
+                self.packet.meet(self.scene, &self.block, doubt);
             }
             while let Some(i) = next(&mut doubt) {
                 let ray = bunch.fan.ray(places[i][0], places[i][1]);
@@ -120,16 +125,14 @@ impl<'a> BunchTracer<'a> {
         Some((sight, all))
     }
 
-    /// Finds where rays of a block are inside the leaves; says which rays may meet the solid.
-    fn meet(&mut self, fan: &Fan, places: &[[f64; 2]]) -> u64 {
+    /// Makes a block of rays; says which may meet the solid.
+    fn make_lines(&mut self, fan: &Fan, places: &[[f64; 2]]) -> u64 {
         self.block.set_common_dir(fan.common_dir());
         for (i, &[right, up]) in places.iter().enumerate() {
             self.block.set_ray(i, &fan.ray(right, up));
         }
         let wanted = u64::MAX >> (BLOCK - places.len());
-        let wanted = wanted & self.block.make_lines(self.packet.arch, &self.scene.stage);
-        self.packet.meet(self.scene, &self.block, wanted);
-        wanted
+        wanted & self.block.make_lines(self.packet.arch, &self.scene.stage)
     }
 
     /// Has the tracer know the spans of a ray of the block, which are between two depths.

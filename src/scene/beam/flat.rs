@@ -3,24 +3,16 @@
 //! A ray is inside of all of the first from the last of their starts to the first of their ends;
 //! of that the others take away theirs. That needs no list of events, so all rays of a packet
 //! do it at once. Where the answer could depend on more than places (two things at one place of
-//! the ray, pieces so thin that their errors are to be known), the ray is left to others.
+//! the ray), the ray is left to others.
 
 use pulp::{Arch, Simd, WithSimd};
 
 use super::block::{BLOCK, Block, Numbers, Slot, is_wanted, load, store};
 use crate::lanes::{Lanes, Vector};
 
-/// The most leaves to be outside of for which chords are found.
-const MOST_CUTS: usize = 8;
-
 /// Whether leaves, of which these are the slots, are of this kind.
 pub(super) fn is_simple(slots: &[Slot]) -> bool {
     slots.iter().all(|slot| slot.is_cut() || slot.is_alone)
-}
-
-/// Whether they are few enough for chords.
-pub(super) fn are_few(slots: &[Slot]) -> bool {
-    slots.iter().filter(|slot| slot.is_cut()).count() <= MOST_CUTS
 }
 
 /// Where rays of a block first come into the solid.
@@ -55,34 +47,6 @@ impl Firsts {
         depth: [f64; 2],
     ) {
         arch.dispatch(FindFirsts { firsts: self, block, slots, wanted, depth });
-    }
-}
-
-/// The chords of rays of a block.
-#[derive(Clone, Debug)]
-pub(super) struct Lengths {
-    /// The sum of the lengths, in steps of the ray.
-    pub(super) length: Numbers,
-    /// How many there are.
-    pub(super) count: Numbers,
-    /// The square of the length of the shortest, or of the shortest gap between two.
-    pub(super) thinnest: Numbers,
-}
-
-impl Lengths {
-    pub(super) const EMPTY: Self =
-        Self { length: [0.0; BLOCK], count: [0.0; BLOCK], thinnest: [0.0; BLOCK] };
-
-    /// Finds them between two depths for the rays that are wanted, and perhaps some more.
-    pub(super) fn find(
-        &mut self,
-        arch: Arch,
-        block: &Block,
-        slots: &[Slot],
-        wanted: u64,
-        depth: [f64; 2],
-    ) {
-        arch.dispatch(FindLengths { lengths: self, block, slots, wanted, depth });
     }
 }
 
@@ -150,7 +114,7 @@ impl WithSimd for FindFirsts<'_> {
                     }
                     number += 2.0;
                 }
-                if !before.less(t).any() {
+                if !Vector::any(before.less(t)) {
                     break;
                 }
             }
@@ -172,81 +136,6 @@ impl WithSimd for FindFirsts<'_> {
             store(&mut firsts.t, i, t);
             store(&mut firsts.end, i, end);
             store(&mut firsts.answer, i, answer);
-        }
-    }
-}
-
-struct FindLengths<'a> {
-    lengths: &'a mut Lengths,
-    block: &'a Block,
-    slots: &'a [Slot],
-    wanted: u64,
-    depth: [f64; 2],
-}
-
-impl WithSimd for FindLengths<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { lengths, block, slots, wanted, depth: [low, high] } = self;
-        for i in 0..BLOCK / S::F64_LANES {
-            if !is_wanted::<S>(wanted, i) {
-                continue;
-            }
-            let like = load(simd, &block.offset, i);
-            let never = like.same(f64::INFINITY);
-            let (mut from, mut to) = (-never, never);
-            let (mut enters, mut exits) = ([never; MOST_CUTS], [never; MOST_CUTS]);
-            let mut cuts = 0;
-            for slot in slots {
-                let enter = load(simd, &slot.enter, i);
-                let exit = load(simd, &slot.exit, i);
-                if slot.is_cut() {
-                    enters[cuts] = enter;
-                    exits[cuts] = exit;
-                    cuts += 1;
-                } else {
-                    from = from.max(enter);
-                    to = to.min(exit);
-                }
-            }
-            // Sorted by their starts: neighbours change places, now the even ones, now the odd.
-            for pass in 0..cuts {
-                let mut k = pass % 2;
-                while k + 1 < cuts {
-                    let wrong = enters[k + 1].less(enters[k]);
-                    let (enter, exit) = (enters[k], exits[k]);
-                    enters[k] = Vector::select(wrong, enters[k + 1], enter);
-                    exits[k] = Vector::select(wrong, exits[k + 1], exit);
-                    enters[k + 1] = Vector::select(wrong, enter, enters[k + 1]);
-                    exits[k + 1] = Vector::select(wrong, exit, exits[k + 1]);
-                    k += 2;
-                }
-            }
-            let (zero, one) = (like.same(0.0), like.same(1.0));
-            let (mut length, mut count, mut thinnest) = (zero, zero, never);
-            // Where it is not known to have been left, and where it was left last.
-            let (mut at, mut left) = (from, -never);
-            for k in 0..=cuts {
-                let until = if k < cuts { enters[k].min(to) } else { to };
-                let enter = block.places_on_rays(simd, i, at);
-                let exit = block.places_on_rays(simd, i, until);
-                let outside = enter.less(like.same(low)) | like.same(high).less(exit);
-                let is_span = at.less(until) & !outside;
-                let (span, gap) = (exit - enter, enter - left);
-                length = length + Vector::select(is_span, span, zero);
-                count = count + Vector::select(is_span, one, zero);
-                let thin = (span * span).min(gap * gap);
-                thinnest = Vector::select(is_span, thinnest.min(thin), thinnest);
-                left = Vector::select(is_span, exit, left);
-                if k < cuts {
-                    at = at.max(exits[k]);
-                }
-            }
-            store(&mut lengths.length, i, length);
-            store(&mut lengths.count, i, count);
-            store(&mut lengths.thinnest, i, thinnest);
         }
     }
 }

@@ -16,6 +16,7 @@
 
 mod block;
 mod bunch;
+mod chord;
 mod flat;
 mod known;
 mod mesh;

@@ -4,7 +4,8 @@ use glam::DVec3;
 use pulp::Arch;
 
 use super::block::{Block, Slot, slots_of};
-use super::flat::{Firsts, Lengths, are_few, is_simple};
+use super::chord::{Lengths, MOST_CUTS};
+use super::flat::{Firsts, is_simple};
 use super::known::Known;
 use super::survey::Candidate;
 use super::walk::{Ends, FEW, Logic, Step, Walk};
@@ -26,6 +27,8 @@ pub(super) struct Packet {
     /// The leaves that are crossed any number of times.
     meshes: Vec<u32>,
     logic: Option<Logic>,
+    /// Whether rays have to be inside of leaves that they come out of once and outside of few.
+    is_flat: bool,
     ends: Ends,
     firsts: Box<Firsts>,
     lengths: Box<Lengths>,
@@ -41,6 +44,7 @@ impl Packet {
             used: 0,
             meshes: Vec::new(),
             logic: None,
+            is_flat: false,
             ends: Vec::new(),
             firsts: Box::new(Firsts::EMPTY),
             lengths: Box::new(Lengths::EMPTY),
@@ -67,6 +71,23 @@ impl Packet {
             }
         }
         self.logic = if self.meshes.is_empty() { self.logic(scene, known) } else { None };
+        self.is_flat =
+            matches!(self.logic, Some(Logic::All { .. })) && self.is_flat(scene);
+    }
+
+    /// Whether rays come once at most out of leaves that they have to be inside of, and are
+    /// not often inside of others.
+    fn is_flat(&self, scene: &Scene) -> bool {
+        let mut cuts = 0;
+        for &Candidate { leaf, faces } in &self.candidates {
+            let slots = slots_of(&scene.shapes[leaf as usize], faces);
+            if scene.literals[leaf as usize].complement {
+                cuts += slots;
+            } else if slots != 1 {
+                return false;
+            }
+        }
+        cuts <= MOST_CUTS
     }
 
     /// The same where it is going to be added where rays are inside of meshes.
@@ -197,21 +218,29 @@ impl Packet {
     }
 
     /// The chords of rays of a block, which are between two places of each, if the solid is
-    /// simple.
+    /// simple and they run the same way.
     pub(super) fn lengths(
         &mut self,
+        scene: &Scene,
         block: &Block,
         wanted: u64,
         within: [f64; 2],
     ) -> Option<&Lengths> {
-        let slots = &self.slots[..self.used];
-        let is_simple = matches!(self.logic, Some(Logic::All { .. }))
-            && is_simple(slots)
-            && are_few(slots);
-        is_simple.then(|| {
-            self.lengths.find(self.arch, block, slots, wanted, within);
-            &*self.lengths
-        })
+        if !self.is_flat || !block.is_parallel() {
+            return None;
+        }
+        let Self { arch, lengths, candidates, .. } = self;
+        lengths.start();
+        for &Candidate { leaf, faces } in &*candidates {
+            let shape = &scene.shapes[leaf as usize];
+            if scene.literals[leaf as usize].complement {
+                lengths.cut(*arch, block, shape, faces, wanted);
+            } else {
+                lengths.keep(*arch, block, shape, faces, wanted);
+            }
+        }
+        lengths.find(*arch, block, wanted, within);
+        Some(lengths)
     }
 
     /// Along a ray, if the solid is a function of few leaves.
