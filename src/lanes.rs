@@ -167,8 +167,30 @@ impl<S: Simd> Not for Truths<S> {
     }
 }
 
+/// Whether vectors have an instruction each for [`Lanes::min`] and [`Lanes::max`]. Those of
+/// x86 choose as these do where zeros have signs or one is not a number; others differ.
+const fn chooses_by_instruction<S: Simd>() -> bool {
+    cfg!(target_arch = "x86_64") && S::F64_LANES > 1
+}
+
 impl<S: Simd> Lanes for Vector<S> {
     type Mask = Truths<S>;
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if chooses_by_instruction::<S>() {
+            return Self(self.0, self.0.min_f64s(self.1, other.1));
+        }
+        Self::select(self.less(other), self, other)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if chooses_by_instruction::<S>() {
+            return Self(self.0, self.0.max_f64s(self.1, other.1));
+        }
+        Self::select(other.less(self), self, other)
+    }
 
     #[inline(always)]
     fn same(self, x: f64) -> Self {
@@ -318,5 +340,43 @@ impl<L: Lanes> Sub for Vec3<L> {
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pulp::{Arch, WithSimd};
+
+    struct Choose([f64; 2]);
+
+    impl WithSimd for Choose {
+        type Output = [f64; 2];
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> [f64; 2] {
+            let [a, b] = self.0.map(|x| Vector(simd, simd.splat_f64s(x)));
+            let first = |x: Vector<S>| {
+                let mut numbers = [0.0; 8];
+                S::as_mut_simd_f64s(&mut numbers).0[0] = x.1;
+                numbers[0]
+            };
+            [first(a.min(b)), first(a.max(b))]
+        }
+    }
+
+    /// Bit by bit, for zeros with signs and for what is not a number too.
+    #[test]
+    fn vectors_choose_as_numbers_do() {
+        let numbers = [0.0, -0.0, 1.5, -2.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+        for arch in [Arch::new(), Arch::Scalar] {
+            for a in numbers {
+                for b in numbers {
+                    let found = arch.dispatch(Choose([a, b])).map(f64::to_bits);
+                    let (least, most) = (Lanes::min(a, b), Lanes::max(a, b));
+                    assert_eq!(found, [least.to_bits(), most.to_bits()], "{a} {b}");
+                }
+            }
+        }
     }
 }
