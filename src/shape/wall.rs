@@ -48,6 +48,12 @@ impl Wall {
         Self { profile, to_local, ends, middle, reach }
     }
 
+    /// This wall with its own profile, about which the caller knows more.
+    #[inline(always)]
+    pub(crate) fn with_profile(&self, profile: Profile) -> Self {
+        Self { profile, ..*self }
+    }
+
     /// A normal of any length, outward, at a world point.
     pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
         let p = self.to_local.point(point);

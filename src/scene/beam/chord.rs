@@ -15,7 +15,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::block::{BLOCK, Block, Numbers, is_wanted, load, slots_of, store, zero};
 use crate::lanes::{Lanes, Vec3, Vector};
-use crate::shape::{Keeps, Plane, Shape, Wall};
+use crate::shape::{Keeps, Plane, Profile, Shape, Wall};
 
 /// The most stretches to be outside of for which chords are found.
 pub(super) const MOST_CUTS: usize = 8;
@@ -197,6 +197,36 @@ impl Reach {
     /// Narrows it to what is inside of a wall, and the other one to what is again.
     #[inline(always)]
     fn narrow_to_wall<S: Simd>(
+        &mut self,
+        simd: S,
+        block: &Block,
+        wanted: u64,
+        wall: &Wall,
+        dir: DVec3,
+        again: Option<&mut Self>,
+    ) {
+        // The frequent families have loops of their own, in which nothing is asked of others.
+        match wall.profile {
+            Profile::Ball { radius } => {
+                let wall = wall.with_profile(Profile::Ball { radius });
+                self.narrow_to_known_wall(simd, block, wanted, &wall, dir, again);
+            }
+            Profile::Cylinder { radius } => {
+                let wall = wall.with_profile(Profile::Cylinder { radius });
+                self.narrow_to_known_wall(simd, block, wanted, &wall, dir, again);
+            }
+            Profile::Cone { .. }
+            | Profile::Paraboloid { .. }
+            | Profile::OneSheet { .. }
+            | Profile::TwoSheets { .. } => {
+                self.narrow_to_known_wall(simd, block, wanted, wall, dir, again);
+            }
+        }
+    }
+
+    /// The same, where the family may be known.
+    #[inline(always)]
+    fn narrow_to_known_wall<S: Simd>(
         &mut self,
         simd: S,
         block: &Block,
