@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::lanes::{Lanes, Vec3};
 use crate::ray::Ray;
 
 /// Rays whose origins and directions depend linearly on two numbers: how far to the right and
@@ -47,6 +48,15 @@ impl Linear {
 
     pub(crate) fn at(&self, right: f64, up: f64) -> DVec3 {
         self.middle + right * self.right + up * self.up
+    }
+
+    /// [`Linear::at`] for several places at once.
+    #[inline(always)]
+    pub(crate) fn at_places<L: Lanes>(&self, right: L, up: L) -> Vec3<L> {
+        let Self { middle, right: r, up: u } = *self;
+        let [middle, r, u] =
+            [Vec3::same(up, middle), Vec3::same(up, r), Vec3::same(up, u)];
+        middle + r.scaled(right) + u.scaled(up)
     }
 
     /// At least the largest coordinate between the middle and there.

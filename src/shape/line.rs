@@ -41,7 +41,8 @@ impl Line {
         if !stage.is_bounded {
             return None;
         }
-        let (line, met) = Lines::new(ray.origin.into(), ray.dir.into(), stage);
+        let heading = Heading::new(ray.dir.into(), stage);
+        let (line, met) = Lines::new(ray.origin.into(), &heading, stage);
         met.then(|| line.into())
     }
 
@@ -111,48 +112,81 @@ impl From<Lines<f64>> for Line {
     }
 }
 
-impl<L: Lanes> Lines<L> {
-    /// Rays as lines, and which of them are valid and meet the bounds, which are bounded.
+/// What depends on the directions of rays and the bounds alone.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Heading<L: Lanes> {
+    pub(crate) dir: Vec3<L>,
+    scale: L,
+    /// The halves of each coordinate of `dir`.
+    halves: [[L; 2]; 3],
+    inverse: Vec3<L>,
+    is_valid: L::Mask,
+}
+
+impl<L: Lanes> Heading<L> {
+    /// Of rays that run these ways.
     #[inline(always)]
-    pub(crate) fn new(origin: Vec3<L>, dir: Vec3<L>, stage: &Stage) -> (Self, L::Mask) {
-        let like = origin.x;
+    pub(crate) fn new(dir: Vec3<L>, stage: &Stage) -> Self {
+        let like = dir.x;
         let (zero, infinity) = (like.same(0.0), like.same(f64::INFINITY));
-        let is_finite = origin.is_finite() & dir.is_finite();
         let largest = dir.largest();
         let size = like.same(stage.size);
         let scale = largest.inverse_power_of_two();
+        let is_finite = dir.is_finite();
         // One factor after the other: their product need not be a number.
         let (dir, scale) = (dir.scaled(scale).scaled(size), scale * size);
         let is_normal = !scale.less(like.same(f64::MIN_POSITIVE)) & scale.less(infinity);
         let is_valid = is_normal & zero.less(largest) & is_finite;
+        let halves = [halves(dir.x), halves(dir.y), halves(dir.z)];
+        let inverse = Vec3 { x: per_unit(dir.x), y: per_unit(dir.y), z: per_unit(dir.z) };
+        Self { dir, scale, halves, inverse, is_valid }
+    }
+}
 
-        let [near, far] = within(origin, dir, stage);
+/// How many steps one unit of length takes; a finite number.
+#[inline(always)]
+fn per_unit<L: Lanes>(dir: L) -> L {
+    let most = dir.same(f64::MAX);
+    (dir.same(1.0) / dir).min(most).max(-most)
+}
+
+impl<L: Lanes> Lines<L> {
+    /// Rays as lines, and which of them are valid and meet the bounds, which are bounded.
+    #[inline(always)]
+    pub(crate) fn new(
+        origin: Vec3<L>,
+        heading: &Heading<L>,
+        stage: &Stage,
+    ) -> (Self, L::Mask) {
+        let like = origin.x;
+        let Heading { dir, scale, is_valid, .. } = *heading;
+        let is_valid = is_valid & origin.is_finite();
+        let [near, far] = within(origin, heading, stage);
         // A range that is not finite belongs to a line too far away to be told apart.
         let meets = !far.less(near) & near.is_finite() & far.is_finite();
         let width = (far - near).max(like.same(LEAST_WIDTH));
         let offset = coarse(like.same(0.5) * (near + far), width);
-        let [origin, rest] = advanced(origin, offset, dir);
+        let [origin, rest] = advanced(origin, offset, heading);
         (Self { rays: Rays { origin, rest, dir }, offset, scale }, is_valid & meets)
     }
 }
 
 /// From where to where lines are in a box, widened as [`Slabs::new`] has it.
 #[inline(always)]
-fn within<L: Lanes>(origin: Vec3<L>, dir: Vec3<L>, stage: &Stage) -> [L; 2] {
+fn within<L: Lanes>(origin: Vec3<L>, heading: &Heading<L>, stage: &Stage) -> [L; 2] {
     let like = origin.x;
     let Stage { bounds: Aabb { min, max }, reach, .. } = *stage;
     let pad = like.same(8.0 * f64::EPSILON) * (like.same(reach) + origin.largest());
-    let [x0, x1] = within_slab(origin.x, dir.x, [min.x, max.x], pad);
-    let [y0, y1] = within_slab(origin.y, dir.y, [min.y, max.y], pad);
-    let [z0, z1] = within_slab(origin.z, dir.z, [min.z, max.z], pad);
+    let inverse = heading.inverse;
+    let [x0, x1] = within_slab(origin.x, inverse.x, [min.x, max.x], pad);
+    let [y0, y1] = within_slab(origin.y, inverse.y, [min.y, max.y], pad);
+    let [z0, z1] = within_slab(origin.z, inverse.z, [min.z, max.z], pad);
     [x0.max(y0).max(z0), x1.min(y1).min(z1)]
 }
 
 /// The same on one axis.
 #[inline(always)]
-fn within_slab<L: Lanes>(origin: L, dir: L, slab: [f64; 2], pad: L) -> [L; 2] {
-    let most = origin.same(f64::MAX);
-    let inverse = (origin.same(1.0) / dir).min(most).max(-most);
+fn within_slab<L: Lanes>(origin: L, inverse: L, slab: [f64; 2], pad: L) -> [L; 2] {
     let low = ((origin.same(slab[0]) - pad) - origin) * inverse;
     let high = ((origin.same(slab[1]) + pad) - origin) * inverse;
     [low.min(high), low.max(high)]
@@ -162,10 +196,11 @@ fn within_slab<L: Lanes>(origin: L, dir: L, slab: [f64; 2], pad: L) -> [L; 2] {
 /// the first (T. J. Dekker, "A Floating-Point Technique for Extending the Available
 /// Precision", Numerische Mathematik 18, 1971; the sum is that of D. E. Knuth).
 #[inline(always)]
-fn advanced<L: Lanes>(origin: Vec3<L>, steps: L, dir: Vec3<L>) -> [Vec3<L>; 2] {
-    let [x, x_rest] = advanced_on_axis(origin.x, steps, dir.x);
-    let [y, y_rest] = advanced_on_axis(origin.y, steps, dir.y);
-    let [z, z_rest] = advanced_on_axis(origin.z, steps, dir.z);
+fn advanced<L: Lanes>(origin: Vec3<L>, steps: L, heading: &Heading<L>) -> [Vec3<L>; 2] {
+    let (dir, [a, b, c], parts) = (heading.dir, heading.halves, halves(steps));
+    let [x, x_rest] = advanced_on_axis(origin.x, steps * dir.x, parts, a);
+    let [y, y_rest] = advanced_on_axis(origin.y, steps * dir.y, parts, b);
+    let [z, z_rest] = advanced_on_axis(origin.z, steps * dir.z, parts, c);
     // Numbers too large to be split have no rest.
     let none = Vec3::same(steps, DVec3::ZERO);
     let has_rest = x_rest.is_finite() & y_rest.is_finite() & z_rest.is_finite();
@@ -177,11 +212,14 @@ fn advanced<L: Lanes>(origin: Vec3<L>, steps: L, dir: Vec3<L>) -> [Vec3<L>; 2] {
     [Vec3 { x, y, z }, rest]
 }
 
-/// The same for one coordinate.
+/// The same for one coordinate: the way is the product of two numbers in halves.
 #[inline(always)]
-fn advanced_on_axis<L: Lanes>(origin: L, steps: L, dir: L) -> [L; 2] {
-    let way = steps * dir;
-    let ([high, low], [a, b]) = (halves(steps), halves(dir));
+fn advanced_on_axis<L: Lanes>(
+    origin: L,
+    way: L,
+    [high, low]: [L; 2],
+    [a, b]: [L; 2],
+) -> [L; 2] {
     let lost_way = ((high * a - way) + high * b + low * a) + low * b;
     let sum = origin + way;
     let back = sum - origin;

@@ -43,7 +43,7 @@ pub(crate) use chain::Chain;
 use cuboid::Cuboid;
 pub(crate) use doubt::{Local, Spot, U};
 use half_space::HalfSpace;
-pub(crate) use line::{Line, Lines, Rays, Stage, inverse_power_of_two};
+pub(crate) use line::{Heading, Line, Lines, Rays, Stage, inverse_power_of_two};
 pub(crate) use pack::{Kept, Linear, Pack, View};
 use place::Frame;
 pub(crate) use place::{ToLocal, inverse};

@@ -3,9 +3,9 @@
 use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
 
+use crate::fan::Fan;
 use crate::lanes::{Lanes, Vec3, Vector};
-use crate::ray::Ray;
-use crate::shape::{Line, Lines, Rays, Shape, Stage, Stretch};
+use crate::shape::{Heading, Line, Lines, Rays, Shape, Stage, Stretch};
 
 /// How many rays a block has: 8 × 8.
 pub(super) const BLOCK: usize = 64;
@@ -16,10 +16,13 @@ pub(super) type Numbers = [f64; BLOCK];
 /// Rays and their lines, coordinate by coordinate.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
-    /// Those of the rays, then those of the lines.
+    /// Where in the fan the rays are.
+    right: Numbers,
+    up: Numbers,
     origin: [Numbers; 3],
+    /// If lines have different ones.
     dir: [Numbers; 3],
-    /// The direction, first of the rays and then of the lines, if all have the same.
+    /// The direction of the lines, if all have the same.
     common_dir: Option<DVec3>,
     rest: [Numbers; 3],
     pub(super) offset: Numbers,
@@ -59,6 +62,8 @@ impl Slot {
 
 impl Block {
     pub(super) const EMPTY: Self = Self {
+        right: [0.0; BLOCK],
+        up: [0.0; BLOCK],
         origin: [[0.0; BLOCK]; 3],
         dir: [[0.0; BLOCK]; 3],
         common_dir: None,
@@ -67,22 +72,22 @@ impl Block {
         scale: [0.0; BLOCK],
     };
 
-    /// Says whether all rays that are going to be set run the same way.
-    pub(super) fn set_common_dir(&mut self, dir: Option<DVec3>) {
-        self.common_dir = dir;
+    /// Says where in the fan a ray is.
+    pub(super) fn set_place(&mut self, i: usize, [right, up]: [f64; 2]) {
+        (self.right[i], self.up[i]) = (right, up);
     }
 
-    pub(super) fn set_ray(&mut self, i: usize, ray: &Ray) {
-        for axis in 0..3 {
-            self.origin[axis][i] = ray.origin[axis];
-            self.dir[axis][i] = ray.dir[axis];
-        }
-    }
-
-    /// Makes lines of the rays; says which of them are valid and meet the bounds, which are
-    /// bounded.
-    pub(super) fn make_lines(&mut self, arch: Arch, stage: &Stage) -> u64 {
-        arch.dispatch(MakeLines { block: self, stage })
+    /// Makes lines of the first rays of a fan; says which of them are valid and meet the
+    /// bounds, which are bounded.
+    pub(super) fn make_lines(
+        &mut self,
+        arch: Arch,
+        fan: &Fan,
+        count: usize,
+        stage: &Stage,
+    ) -> u64 {
+        let met = arch.dispatch(MakeLines { block: self, fan, count, stage });
+        met & u64::MAX >> (BLOCK - count)
     }
 
     /// One of the lines.
@@ -92,8 +97,8 @@ impl Block {
             y: numbers[1][i],
             z: numbers[2][i],
         };
-        let rays =
-            Rays { origin: at(&self.origin), rest: at(&self.rest), dir: at(&self.dir) };
+        let dir = self.common_dir.map_or_else(|| at(&self.dir), Vec3::from);
+        let rays = Rays { origin: at(&self.origin), rest: at(&self.rest), dir };
         Line::from(Lines { rays, offset: self.offset[i], scale: self.scale[i] })
     }
 
@@ -137,6 +142,8 @@ pub(super) fn slots_of(shape: &Shape, faces: u32) -> usize {
 
 struct MakeLines<'a> {
     block: &'a mut Block,
+    fan: &'a Fan,
+    count: usize,
     stage: &'a Stage,
 }
 
@@ -144,40 +151,29 @@ impl WithSimd for MakeLines<'_> {
     type Output = u64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) -> u64 {
+    fn with_simd<S: Simd>(self, simd: S) -> u64 {
+        let Self { block, fan, count, stage } = self;
+        let common = fan.common_dir();
         // What depends on a direction alone is found once where all have the same.
-        match self.block.common_dir {
-            Some(dir) => {
-                let met = self.make(simd, Some(Vec3::same(zero(simd), dir)));
-                let [x, y, z] = self.block.dir.each_ref().map(|numbers| numbers[0]);
-                self.block.common_dir = Some(DVec3::new(x, y, z));
-                met
-            }
-            None => self.make(simd, None),
-        }
-    }
-}
-
-impl MakeLines<'_> {
-    #[inline(always)]
-    fn make<S: Simd>(&mut self, simd: S, common: Option<Vec3<Vector<S>>>) -> u64 {
-        let Self { block, stage } = self;
+        let dir = common.unwrap_or(fan.dir.middle);
+        let mut heading = Heading::new(Vec3::same(zero(simd), dir), stage);
         let mut met = [0.0; BLOCK];
-        for i in 0..BLOCK / S::F64_LANES {
-            let origin = load3(simd, &block.origin, i);
-            let dir = match common {
-                Some(dir) => dir,
-                None => load3(simd, &block.dir, i),
-            };
-            let (lines, valid) = Lines::new(origin, dir, stage);
-            let Lines { rays: Rays { origin, rest, dir }, offset, scale } = lines;
+        for i in 0..count.div_ceil(S::F64_LANES) {
+            let (right, up) = (load(simd, &block.right, i), load(simd, &block.up, i));
+            if common.is_none() {
+                heading = Heading::new(fan.dir.at_places(right, up), stage);
+                store3(&mut block.dir, i, heading.dir);
+            }
+            let origin = fan.origin.at_places(right, up);
+            let (lines, valid) = Lines::new(origin, &heading, stage);
+            let Lines { rays: Rays { origin, rest, .. }, offset, scale } = lines;
             store3(&mut block.origin, i, origin);
             store3(&mut block.rest, i, rest);
-            store3(&mut block.dir, i, dir);
             store(&mut block.offset, i, offset);
             store(&mut block.scale, i, scale);
             store(&mut met, i, Vector::select(valid, offset.same(1.0), offset.same(0.0)));
         }
+        block.common_dir = common.map(|dir| Heading::new(dir.into(), bounds).dir.into());
         met.iter().rev().fold(0, |bits, &met| bits << 1 | u64::from(met > 0.0))
     }
 }
@@ -319,7 +315,10 @@ impl Slot {
 /// The lines of packet `i`.
 #[inline(always)]
 pub(super) fn rays_of<S: Simd>(block: &Block, simd: S, i: usize) -> Rays<Vector<S>> {
-    block.rays(simd, i, None)
+    match block.common_dir {
+        Some(dir) => block.rays(simd, i, Some(Vec3::same(zero(simd), dir))),
+        None => block.rays(simd, i, None),
+    }
 }
 
 /// The numbers of the bits that are set.

@@ -127,12 +127,11 @@ impl<'a> BunchTracer<'a> {
 
     /// Makes a block of rays; says which may meet the solid.
     fn make_lines(&mut self, fan: &Fan, places: &[[f64; 2]]) -> u64 {
-        self.block.set_common_dir(fan.common_dir());
-        for (i, &[right, up]) in places.iter().enumerate() {
-            self.block.set_ray(i, &fan.ray(right, up));
+        for (i, &place) in places.iter().enumerate() {
+            self.block.set_place(i, place);
         }
-        let wanted = u64::MAX >> (BLOCK - places.len());
-        wanted & self.block.make_lines(self.packet.arch, &self.scene.stage)
+        let (arch, stage) = (self.packet.arch, &self.scene.stage);
+        self.block.make_lines(arch, fan, places.len(), stage)
     }
 
     /// Has the tracer know the spans of a ray of the block, which are between two depths.

@@ -140,12 +140,11 @@ impl<'a> TileTracer<'a> {
         if self.has_lines & 1 << block == 0 {
             self.has_lines |= 1 << block;
             let wanted = self.open[block];
-            self.blocks[block].set_common_dir(tile.fan.common_dir());
             for ray in (0..BLOCK).filter(|ray| wanted >> ray & 1 == 1) {
-                self.blocks[block].set_ray(ray, &tile.ray_of(block, ray));
+                self.blocks[block].set_place(ray, tile.place_of(block, ray));
             }
-            let valid =
-                self.blocks[block].make_lines(self.packet.arch, &self.scene.stage);
+            let (arch, stage) = (self.packet.arch, &self.scene.stage);
+            let valid = self.blocks[block].make_lines(arch, tile.fan, BLOCK, stage);
             self.open[block] &= valid;
         }
     }
