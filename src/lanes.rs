@@ -63,6 +63,15 @@ pub(crate) trait Lanes:
         Self::select(self.abs().less(self.same(2_251_799_813_685_248.0)), rounded, self)
     }
 
+    /// The largest whole number up to one from 0 to 2³¹, for [`small`] to read.
+    #[inline(always)]
+    fn small(self) -> Self {
+        let large = self.same(SMALL);
+        let rounded = self + large;
+        let above = self.less(rounded - large);
+        Self::select(above, rounded - self.same(1.0), rounded)
+    }
+
     /// Whether it is a number, and not infinite.
     #[inline(always)]
     fn is_finite(self) -> Self::Mask {
@@ -242,6 +251,15 @@ impl<S: Simd> Lanes for Vector<S> {
     }
 }
 
+/// To whole numbers below 2⁵² this adds as many units of the last place: 2⁵².
+const SMALL: f64 = 4_503_599_627_370_496.0;
+
+/// What [`Lanes::small`] has found.
+pub(crate) fn small(x: f64) -> usize {
+    let bits = x.to_bits() & u64::from(u32::MAX);
+    usize::try_from(bits).expect("32 bits")
+}
+
 /// A whole number that was kept, or computed, among others.
 #[expect(
     clippy::cast_possible_truncation,
@@ -362,6 +380,14 @@ mod tests {
                 numbers[0]
             };
             [first(a.min(b)), first(a.max(b))]
+        }
+    }
+
+    #[test]
+    fn small_numbers_are_read() {
+        for x in [0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.5, 2.999_999_9, 7.0, 2_147_483_647.5]
+        {
+            assert_eq!(small(x.small()) as u64, whole(x), "{x}");
         }
     }
 

@@ -218,7 +218,7 @@ fn part<S, T: Tally>(
         }
         late.load(Ordering::Relaxed)
     };
-    let scratch = || (scratch(), Column::default());
+    let scratch = || (scratch(), Column::new());
     let mut replicates = tallies();
     for (i, beam) in beams.iter().enumerate() {
         let shifts: Vec<DVec2> = numbers.clone().map(|number| shift(i, number)).collect();
@@ -235,7 +235,7 @@ fn part<S, T: Tally>(
                 }
                 sample(scratch, &bunch, &mut tallies);
             }
-            if watch(column.places.len() as u64).is_break() {
+            if watch(column.len() as u64).is_break() {
                 late.store(true, Ordering::Relaxed);
             }
             tallies

@@ -27,7 +27,7 @@ use crate::parts::Part;
 use crate::ray::{Crossing, Ray, Sense};
 use crate::shape::{Line, Shape, Spot, Stage, inverse_power_of_two};
 use crate::solid::{Place, Solid};
-pub(crate) use beam::{Bunch, BunchTracer, Chords, SIDE, Tile, TileTracer};
+pub(crate) use beam::{Bunch, BunchTracer, Chords, Places, SIDE, Tile, TileTracer};
 pub use classify::Membership;
 pub use compile::{CompileError, LeafName};
 pub use options::CompileOptions;

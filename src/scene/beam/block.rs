@@ -3,6 +3,7 @@
 use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
 
+use super::bunch::Places;
 use crate::fan::Fan;
 use crate::lanes::{Lanes, Vec3, Vector};
 use crate::shape::{Heading, Line, Lines, Rays, Shape, Stage, Stretch};
@@ -75,6 +76,13 @@ impl Block {
     /// Says where in the fan a ray is.
     pub(super) fn set_place(&mut self, i: usize, [right, up]: [f64; 2]) {
         (self.right[i], self.up[i]) = (right, up);
+    }
+
+    /// Says where the first rays are.
+    pub(super) fn set_places(&mut self, places: &Places<'_>) {
+        let Places { right, up } = places;
+        self.right[..right.len()].copy_from_slice(right);
+        self.up[..up.len()].copy_from_slice(up);
     }
 
     /// Makes lines of the first rays of a fan; says which of them are valid and meet the
@@ -173,7 +181,7 @@ impl WithSimd for MakeLines<'_> {
             store(&mut block.scale, i, scale);
             store(&mut met, i, Vector::select(valid, offset.same(1.0), offset.same(0.0)));
         }
-        block.common_dir = common.map(|dir| Heading::new(dir.into(), bounds).dir.into());
+        block.common_dir = common.map(|dir| Heading::new(dir.into(), stage).dir.into());
         met.iter().rev().fold(0, |bits, &met| bits << 1 | u64::from(met > 0.0))
     }
 }

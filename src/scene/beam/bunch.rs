@@ -18,7 +18,31 @@ use crate::scene::{Scene, Tracer};
 pub(crate) struct Bunch<'a> {
     pub(crate) fan: &'a Fan,
     pub(crate) corners: [[f64; 2]; 2],
-    pub(crate) places: &'a [[f64; 2]],
+    pub(crate) places: Places<'a>,
+}
+
+/// Where in a fan rays are: how far to the right, and how far up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Places<'a> {
+    pub(crate) right: &'a [f64],
+    pub(crate) up: &'a [f64],
+}
+
+impl<'a> Places<'a> {
+    fn len(&self) -> usize {
+        self.right.len()
+    }
+
+    /// Block by block, with the number of the first of each.
+    fn blocks(self) -> impl Iterator<Item = (usize, Self)> + use<'a> {
+        let blocks = self.right.chunks(BLOCK).zip(self.up.chunks(BLOCK));
+        (0..).step_by(BLOCK).zip(blocks.map(|(right, up)| Self { right, up }))
+    }
+
+    /// One ray of a fan.
+    fn ray(&self, fan: &Fan, i: usize) -> Ray {
+        fan.ray(self.right[i], self.up[i])
+    }
 }
 
 /// Scratch memory for bunches of rays through a scene; one for each thread.
@@ -57,11 +81,11 @@ impl<'a> BunchTracer<'a> {
         let Some((sight, all)) = self.look_at(bunch) else {
             return;
         };
-        for (first, places) in blocks(bunch.places) {
-            let mut open = self.make_lines(bunch.fan, places);
+        for (first, places) in bunch.places.blocks() {
+            let mut open = self.make_lines(bunch.fan, &places);
             self.packet.meet(self.scene, &self.block, open);
             while let Some(i) = next(&mut open) {
-                let ray = bunch.fan.ray(places[i][0], places[i][1]);
+                let ray = places.ray(bunch.fan, i);
                 self.walk(i, sight.depth);
                 visit(first + i, &ray, &self.tracer);
             }
@@ -80,8 +104,8 @@ impl<'a> BunchTracer<'a> {
         };
         let slowest = slowest(bunch);
         let thin = self.scene.longest_thin(sight.reach) / (slowest * slowest);
-        for (first, places) in blocks(bunch.places) {
-            let wanted = self.make_lines(bunch.fan, places);
+        for (first, places) in bunch.places.blocks() {
+            let wanted = self.make_lines(bunch.fan, &places);
             let lengths =
                 self.packet.lengths(self.scene, &self.block, wanted, sight.depth);
             let mut doubt = wanted;
@@ -99,7 +123,7 @@ impl<'a> BunchTracer<'a> {
                 self.packet.meet(self.scene, &self.block, doubt);
             }
             while let Some(i) = next(&mut doubt) {
-                let ray = bunch.fan.ray(places[i][0], places[i][1]);
+                let ray = places.ray(bunch.fan, i);
                 self.walk(i, sight.depth);
                 visit(first + i, Chords::found(&self.tracer, &ray));
             }
@@ -126,10 +150,8 @@ impl<'a> BunchTracer<'a> {
     }
 
     /// Makes a block of rays; says which may meet the solid.
-    fn make_lines(&mut self, fan: &Fan, places: &[[f64; 2]]) -> u64 {
-        for (i, &place) in places.iter().enumerate() {
-            self.block.set_place(i, place);
-        }
+    fn make_lines(&mut self, fan: &Fan, places: &Places<'_>) -> u64 {
+        self.block.set_places(places);
         let (arch, stage) = (self.packet.arch, &self.scene.stage);
         self.block.make_lines(arch, fan, places.len(), stage)
     }
@@ -167,11 +189,6 @@ impl Chords {
             uncertain: tracer.uncertain(ray),
         }
     }
-}
-
-/// The places block by block, with the number of the first of each.
-fn blocks(places: &[[f64; 2]]) -> impl Iterator<Item = (usize, &[[f64; 2]])> {
-    (0..).step_by(BLOCK).zip(places.chunks(BLOCK))
 }
 
 /// The number of the lowest bit, which is taken away.

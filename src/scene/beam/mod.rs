@@ -33,6 +33,6 @@ mod trial;
 mod walk;
 mod work;
 
-pub(crate) use bunch::{Bunch, BunchTracer, Chords};
+pub(crate) use bunch::{Bunch, BunchTracer, Chords, Places};
 pub(super) use known::{Known, Place};
 pub(crate) use tile::{SIDE, Tile, TileTracer};

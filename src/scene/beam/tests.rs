@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use pulp::Arch;
 
 use super::work::Work;
-use super::{Bunch, BunchTracer, Chords, SIDE, Tile, TileTracer};
+use super::{Bunch, BunchTracer, Chords, Places, SIDE, Tile, TileTracer};
 use crate::fan::{Fan, Linear};
 use crate::op::Op;
 use crate::ray::{Crossing, Span};
@@ -94,7 +94,9 @@ fn assert_same_spans(scene: &Scene, fan: &Fan, step: [f64; 2], size: [usize; 2])
     let places: Vec<[f64; 2]> =
         (0..size[1]).flat_map(|j| (0..size[0]).map(move |i| at(i, j))).collect();
     let corners = [at(0, 0), at(size[0] - 1, size[1] - 1)];
-    let bunch = Bunch { fan, corners, places: &places };
+    let [right, up] =
+        [0, 1].map(|axis| places.iter().map(|place| place[axis]).collect::<Vec<f64>>());
+    let bunch = Bunch { fan, corners, places: Places { right: &right, up: &up } };
     let mut alone = scene.tracer();
     let expected: Vec<(Vec<Span>, Chords)> = places
         .iter()
