@@ -182,6 +182,21 @@ const fn chooses_by_instruction<S: Simd>() -> bool {
     cfg!(target_arch = "x86_64") && S::F64_LANES > 1
 }
 
+/// A number for each of the most rays that a machine computes at once: its bit.
+const WEIGHTS: [f64; 8] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
+
+impl<S: Simd> Truths<S> {
+    /// A bit for each ray of which it is true, that of the first one lowest.
+    #[inline(always)]
+    pub(crate) fn bits(self) -> u64 {
+        let Self(simd, truths) = self;
+        let (weights, _) = S::as_simd_f64s(&WEIGHTS);
+        let weights = simd.select_f64s(truths, weights[0], simd.splat_f64s(0.0));
+        // Sums of different powers of two are exact.
+        small(simd.reduce_sum_f64s(weights) + SMALL) as u64
+    }
+}
+
 impl<S: Simd> Lanes for Vector<S> {
     type Mask = Truths<S>;
 

@@ -20,7 +20,7 @@ pub(super) struct Sum {
 impl From<Chords> for Sum {
     /// Those of one ray.
     fn from(chords: Chords) -> Self {
-        Self { chords, hits: u64::from(chords.length > 0.0) }
+        Self { chords, hits: u64::from(chords.spans > 0) }
     }
 }
 

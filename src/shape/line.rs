@@ -121,6 +121,8 @@ pub(crate) struct Heading<L: Lanes> {
     halves: [[L; 2]; 3],
     inverse: Vec3<L>,
     is_valid: L::Mask,
+    /// No coordinate of the bounds is larger.
+    reach: L,
 }
 
 impl<L: Lanes> Heading<L> {
@@ -139,7 +141,7 @@ impl<L: Lanes> Heading<L> {
         let is_valid = is_normal & zero.less(largest) & is_finite;
         let halves = [halves(dir.x), halves(dir.y), halves(dir.z)];
         let inverse = Vec3 { x: per_unit(dir.x), y: per_unit(dir.y), z: per_unit(dir.z) };
-        Self { dir, scale, halves, inverse, is_valid }
+        Self { dir, scale, halves, inverse, is_valid, reach: like.same(stage.reach) }
     }
 }
 
@@ -175,9 +177,8 @@ impl<L: Lanes> Lines<L> {
 #[inline(always)]
 fn within<L: Lanes>(origin: Vec3<L>, heading: &Heading<L>, stage: &Stage) -> [L; 2] {
     let like = origin.x;
-    let Stage { bounds: Aabb { min, max }, reach, .. } = *stage;
-    let pad = like.same(8.0 * f64::EPSILON) * (like.same(reach) + origin.largest());
-    let inverse = heading.inverse;
+    let pad = like.same(8.0 * f64::EPSILON) * (heading.reach + origin.largest());
+    let (Aabb { min, max }, inverse) = (stage.bounds, heading.inverse);
     let [x0, x1] = within_slab(origin.x, inverse.x, [min.x, max.x], pad);
     let [y0, y1] = within_slab(origin.y, inverse.y, [min.y, max.y], pad);
     let [z0, z1] = within_slab(origin.z, inverse.z, [min.z, max.z], pad);

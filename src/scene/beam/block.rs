@@ -165,7 +165,7 @@ impl WithSimd for MakeLines<'_> {
         // What depends on a direction alone is found once where all have the same.
         let dir = common.unwrap_or(fan.dir.middle);
         let mut heading = Heading::new(Vec3::same(zero(simd), dir), stage);
-        let mut met = [0.0; BLOCK];
+        let mut met = 0;
         for i in 0..count.div_ceil(S::F64_LANES) {
             let (right, up) = (load(simd, &block.right, i), load(simd, &block.up, i));
             if common.is_none() {
@@ -179,10 +179,10 @@ impl WithSimd for MakeLines<'_> {
             store3(&mut block.rest, i, rest);
             store(&mut block.offset, i, offset);
             store(&mut block.scale, i, scale);
-            store(&mut met, i, Vector::select(valid, offset.same(1.0), offset.same(0.0)));
+            met |= valid.bits() << (i * S::F64_LANES);
         }
         block.common_dir = common.map(|dir| Heading::new(dir.into(), stage).dir.into());
-        met.iter().rev().fold(0, |bits, &met| bits << 1 | u64::from(met > 0.0))
+        met
     }
 }
 

@@ -4,12 +4,10 @@ use glam::DVec3;
 use pulp::Arch;
 
 use super::block::{BLOCK, Block};
-use super::chord::Lengths;
 use super::packet::Packet;
 use super::sight::Sight;
 use super::survey::{List, Survey};
 use crate::fan::Fan;
-use crate::lanes::whole;
 use crate::ray::{Ray, Span};
 use crate::scene::{Scene, Tracer};
 
@@ -106,18 +104,12 @@ impl<'a> BunchTracer<'a> {
         let thin = self.scene.longest_thin(sight.reach) / (slowest * slowest);
         for (first, places) in bunch.places.blocks() {
             let wanted = self.make_lines(bunch.fan, &places);
-            let lengths =
-                self.packet.lengths(self.scene, &self.block, wanted, sight.depth);
-            let mut doubt = wanted;
-            if let Some(Lengths { length, count, thinnest, .. }) = lengths {
-                let mut open = wanted;
-                while let Some(i) = next(&mut open) {
-                    if thinnest[i] > thin {
-                        doubt &= !(1 << i);
-                        let (length, spans) = (length[i], whole(count[i]));
-                        visit(first + i, Chords { length, spans, uncertain: 0 });
-                    }
-                }
+            let (packet, depth) = (&mut self.packet, sight.depth);
+            let mut doubt =
+                packet.find_chords(self.scene, &self.block, wanted, depth, thin);
+            let mut sure = wanted & !doubt;
+            while let Some(i) = next(&mut sure) {
+                visit(first + i, packet.chords(i));
             }
             if doubt != 0 {
                 self.packet.meet(self.scene, &self.block, doubt);

@@ -14,7 +14,8 @@ use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::block::{BLOCK, Block, Numbers, is_wanted, load, slots_of, store, zero};
-use crate::lanes::{Lanes, Vec3, Vector};
+use super::bunch::Chords;
+use crate::lanes::{Lanes, Vec3, Vector, small};
 use crate::shape::{Keeps, Plane, Profile, Shape, Wall};
 
 /// The most stretches to be outside of for which chords are found.
@@ -24,32 +25,32 @@ pub(super) const MOST_CUTS: usize = 8;
 #[derive(Clone, Debug)]
 pub(super) struct Lengths {
     /// The sum of the lengths, in steps of the ray.
-    pub(super) length: Numbers,
-    /// How many there are.
-    pub(super) count: Numbers,
-    /// The square of the length of the shortest, or of the shortest gap between two.
-    pub(super) thinnest: Numbers,
+    length: Numbers,
+    /// How many there are, for [`small`] to read.
+    count: Numbers,
     /// Where rays are inside of all leaves that they have to be inside of.
     within: Reach,
     /// Where they are inside of the others, as often as they can be.
     cuts: [Reach; MOST_CUTS],
     /// How many of these there are.
     used: usize,
+    /// Whether there is a leaf that rays have to be inside of.
+    is_kept: bool,
 }
 
 impl Lengths {
     pub(super) const EMPTY: Self = Self {
         length: [0.0; BLOCK],
         count: [0.0; BLOCK],
-        thinnest: [0.0; BLOCK],
         within: Reach::ALL,
         cuts: [Reach::ALL; MOST_CUTS],
         used: 0,
+        is_kept: false,
     };
 
-    /// Takes all of space.
+    /// Forgets all leaves.
     pub(super) fn start(&mut self) {
-        self.within = Reach::ALL;
+        self.is_kept = false;
         self.used = 0;
     }
 
@@ -64,7 +65,9 @@ impl Lengths {
         wanted: u64,
     ) {
         let reaches = slice::from_mut(&mut self.within);
-        arch.dispatch(Narrow { reaches, block, shape, faces, wanted });
+        let afresh = !self.is_kept;
+        arch.dispatch(Narrow { reaches, afresh, block, shape, faces, wanted });
+        self.is_kept = true;
     }
 
     /// Rays have to be outside of a leaf. There are at most [`MOST_CUTS`] stretches of it and
@@ -79,20 +82,27 @@ impl Lengths {
     ) {
         let end = self.used + slots_of(shape, faces);
         let reaches = &mut self.cuts[self.used..end];
-        reaches.fill(Reach::ALL);
-        arch.dispatch(Narrow { reaches, block, shape, faces, wanted });
+        arch.dispatch(Narrow { reaches, afresh: true, block, shape, faces, wanted });
         self.used = end;
     }
 
-    /// Finds the chords between two depths.
+    /// Finds the chords between two depths. Says for which rays one of them, or of the gaps
+    /// between them, may be no longer than the square root of `thin`.
     pub(super) fn find(
         &mut self,
         arch: Arch,
         block: &Block,
         wanted: u64,
         depth: [f64; 2],
-    ) {
-        arch.dispatch(Find { lengths: self, block, wanted, depth });
+        thin: f64,
+    ) -> u64 {
+        arch.dispatch(Find { lengths: self, block, wanted, depth, thin }) & wanted
+    }
+
+    /// The chords of a ray.
+    pub(super) fn chords(&self, ray: usize) -> Chords {
+        let spans = small(self.count[ray]) as u64;
+        Chords { length: self.length[ray], spans, uncertain: 0 }
     }
 }
 
@@ -121,6 +131,8 @@ impl Reach {
 /// Narrows the stretch of each line, or both, to what is inside of a leaf.
 struct Narrow<'a> {
     reaches: &'a mut [Reach],
+    /// Whether they are the whole lines before.
+    afresh: bool,
     block: &'a Block,
     shape: &'a Shape,
     faces: u32,
@@ -132,9 +144,16 @@ impl WithSimd for Narrow<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { reaches, block, shape, faces, wanted } = self;
+        let Self { reaches, afresh, block, shape, faces, wanted } = self;
         let Some(dir) = block.common_dir() else { return };
         let Some((first, others)) = reaches.split_first_mut() else { return };
+        if afresh {
+            let never = zero(simd).same(f64::INFINITY);
+            for i in 0..packets::<S>(wanted) {
+                store(&mut first.from, i, -never);
+                store(&mut first.to, i, never);
+            }
+        }
         let (planes, wall) = shape.sides();
         let of_planes = if wall.is_some() { faces >> 1 } else { faces };
         for (face, plane) in (0..).zip(planes) {
@@ -263,14 +282,15 @@ struct Find<'a> {
     block: &'a Block,
     wanted: u64,
     depth: [f64; 2],
+    thin: f64,
 }
 
 impl WithSimd for Find<'_> {
-    type Output = ();
+    type Output = u64;
 
     /// As many places for cuts as there are, or a few more.
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
+    fn with_simd<S: Simd>(self, simd: S) -> u64 {
         match self.lengths.used {
             0 => self.find::<S, 0>(simd),
             1 => self.find::<S, 1>(simd),
@@ -283,26 +303,32 @@ impl WithSimd for Find<'_> {
 
 impl Find<'_> {
     #[inline(always)]
-    fn find<S: Simd, const CUTS: usize>(self, simd: S) {
-        let Self { lengths, block, wanted, depth: [low, high] } = self;
+    fn find<S: Simd, const CUTS: usize>(self, simd: S) -> u64 {
+        let Self { lengths, block, wanted, depth: [low, high], thin } = self;
+        let mut doubt = 0;
         let (zero, one) = (zero(simd), zero(simd).same(1.0));
         let (low, high) = (zero.same(low), zero.same(high));
-        let never = zero.same(f64::INFINITY);
+        let (never, none) = (zero.same(f64::INFINITY), zero.small());
         let cuts = &lengths.cuts[..lengths.used.min(CUTS)];
         for i in 0..packets::<S>(wanted) {
             if !is_wanted::<S>(wanted, i) {
                 continue;
             }
-            let from = load(simd, &lengths.within.from, i);
-            let to = load(simd, &lengths.within.to, i);
+            let (mut from, mut to) = (-never, never);
+            if lengths.is_kept {
+                from = load(simd, &lengths.within.from, i);
+                to = load(simd, &lengths.within.to, i);
+            }
             // Those that are empty begin nowhere.
             let (mut enters, mut exits) = ([never; CUTS], [never; CUTS]);
-            for k in 0..cuts.len() {
-                let enter = load(simd, &cuts[k].from, i);
-                let exit = load(simd, &cuts[k].to, i);
-                let is_one = enter.less(exit);
-                enters[k] = Vector::select(is_one, enter, never);
-                exits[k] = Vector::select(is_one, exit, never);
+            for k in 0..CUTS {
+                if let Some(cut) = cuts.get(k) {
+                    let (enter, exit) =
+                        (load(simd, &cut.from, i), load(simd, &cut.to, i));
+                    let is_one = enter.less(exit);
+                    enters[k] = Vector::select(is_one, enter, never);
+                    exits[k] = Vector::select(is_one, exit, never);
+                }
             }
             // Sorted by their starts: neighbours change places, now the even ones, now the odd.
             for pass in 0..CUTS {
@@ -317,7 +343,7 @@ impl Find<'_> {
                     k += 2;
                 }
             }
-            let (mut length, mut count, mut thinnest) = (zero, zero, never);
+            let (mut length, mut count, mut thinnest) = (zero, none, never);
             // Where it is not known to have been left, and where it was left last.
             let (mut at, mut left) = (from, -never);
             for k in 0..=CUTS {
@@ -338,7 +364,11 @@ impl Find<'_> {
             }
             store(&mut lengths.length, i, length);
             store(&mut lengths.count, i, count);
-            store(&mut lengths.thinnest, i, thinnest);
+            let is_thin = !zero.same(thin).less(thinnest);
+            if Vector::any(is_thin) {
+                doubt |= is_thin.bits() << (i * S::F64_LANES);
+            }
         }
+        doubt
     }
 }

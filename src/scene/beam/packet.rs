@@ -4,6 +4,7 @@ use glam::DVec3;
 use pulp::Arch;
 
 use super::block::{Block, Slot, slots_of};
+use super::bunch::Chords;
 use super::chord::{Lengths, MOST_CUTS};
 use super::flat::{Firsts, is_simple};
 use super::known::Known;
@@ -217,17 +218,19 @@ impl Packet {
         crossing(&self.slots, &step, block, ray)
     }
 
-    /// The chords of rays of a block, which are between two places of each, if the solid is
-    /// simple and they run the same way.
-    pub(super) fn lengths(
+    /// Finds the chords of rays of a block, which are between two places of each, if the
+    /// solid is simple and they run the same way. Says for which rays that was not possible, or
+    /// some thing may be no longer than the square root of `thin`.
+    pub(super) fn find_chords(
         &mut self,
         scene: &Scene,
         block: &Block,
         wanted: u64,
         within: [f64; 2],
-    ) -> Option<&Lengths> {
+        thin: f64,
+    ) -> u64 {
         if !self.is_flat || !block.is_parallel() {
-            return None;
+            return wanted;
         }
         let Self { arch, lengths, candidates, .. } = self;
         lengths.start();
@@ -239,8 +242,12 @@ impl Packet {
                 lengths.keep(*arch, block, shape, faces, wanted);
             }
         }
-        lengths.find(*arch, block, wanted, within);
-        Some(lengths)
+        lengths.find(*arch, block, wanted, within, thin)
+    }
+
+    /// The chords of a ray, as [`Packet::find_chords`] has just found.
+    pub(super) fn chords(&self, ray: usize) -> Chords {
+        self.lengths.chords(ray)
     }
 
     /// Along a ray, if the solid is a function of few leaves.
