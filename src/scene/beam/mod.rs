@@ -23,6 +23,7 @@ mod mesh;
 mod meshes;
 mod outline;
 mod packet;
+mod reach;
 mod sight;
 mod sighting;
 mod survey;
