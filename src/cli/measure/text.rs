@@ -86,7 +86,8 @@ fn body(body: &BodyJson, of: &str, out: &mut dyn Write) -> anyhow::Result<()> {
     writeln!(out, "  xx yy zz {}", row(&m[0][0], &m[1][1], &m[2][2]))?;
     writeln!(out, "  xy yz zx {}", row(&m[0][1], &m[1][2], &m[2][0]))?;
     for (i, principal) in body.principal.iter().enumerate() {
-        let [x, y, z] = principal.axis;
+        // A zero that has a sign is added to one that has none.
+        let [x, y, z] = principal.axis.map(|x| (1e4 * x).round() / 1e4 + 0.0);
         let label = if i == 0 { "principal" } else { "         " };
         writeln!(
             out,
