@@ -7,7 +7,7 @@ use glam::DAffine3;
 
 use crate::color::Color;
 use crate::op::Op;
-use crate::solid::{Kind, Solid, Tag};
+use crate::solid::{Kind, Place, Solid, Tag};
 
 /// What leaves are of, if they have a name or a colour.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -104,6 +104,42 @@ impl Solid {
         found.into_iter().map(whole).collect()
     }
 
+    /// The operands of the topmost union that has several, in the order of the file, and where each
+    /// stands if that is known; the solid itself if there is no such union at the top.
+    pub fn objects(&self) -> Vec<(Option<Place>, Self)> {
+        let mut around: Vec<Around<'_>> = Vec::new();
+        let (mut top, mut outer) = (self, None);
+        loop {
+            let step = match (top.kind(), top.children()) {
+                (Kind::Mapped(map), [_]) => Step::Mapped(map),
+                (Kind::Tagged(tag), [_]) => Step::Tagged(tag),
+                // One operand is the same under any operator.
+                (Kind::Boolean(_), [_]) => Step::With(Op::Union, &[]),
+                (Kind::Boolean(Op::Union), children @ [_, _, ..]) => {
+                    let object = |child: &Self| {
+                        (child.place(), put_back(child.clone(), outer, &around))
+                    };
+                    return children.iter().map(object).collect();
+                }
+                _ => return vec![(self.place(), self.clone())],
+            };
+            around.push(Around { step, outer });
+            (top, outer) = (&top.children()[0], Some(around.len() - 1));
+        }
+    }
+
+    /// Where it stands in its file, if its outermost tags say so.
+    fn place(&self) -> Option<Place> {
+        let mut at = self;
+        while let (Kind::Tagged(tag), [child]) = (at.kind(), at.children()) {
+            if let Tag::Place(place) = tag {
+                return Some(*place);
+            }
+            at = child;
+        }
+        None
+    }
+
     /// The nodes, by their addresses, from which material can have a name or a colour that it was
     /// given below.
     fn with_parts(&self) -> HashSet<usize> {
@@ -176,6 +212,22 @@ mod tests {
         assert_eq!(colors(&colored(both, 0.7)), [Some(0.7)]);
         assert_eq!(colors(&(a.clone() + (b + a))), [Some(0.1), Some(0.2)]);
         assert_eq!(colors(&Solid::boolean(Op::Intersection, [])), [None]);
+    }
+
+    #[test]
+    fn objects_are_the_operands_of_the_topmost_union() {
+        let place = |line| Place { line, column: 1 };
+        let (a, b) = (Solid::ball(1.0).placed(place(3)), Solid::cuboid(DVec3::ONE));
+        assert_eq!(a.objects().len(), 1);
+        assert_eq!(a.objects()[0].0, Some(place(3)));
+        let both = Solid::boolean(Op::Union, [a.clone() + b.clone()]);
+        let objects = both.clone().translated(DVec3::X).objects();
+        let places: Vec<_> = objects.iter().map(|(place, _)| *place).collect();
+        assert_eq!(places, [Some(place(3)), None]);
+        for (_, object) in &objects {
+            assert!(matches!(object.kind(), Kind::Mapped(_)), "it is moved as all are");
+        }
+        assert_eq!((both - a).objects().len(), 1);
     }
 
     #[test]

@@ -164,3 +164,32 @@ fn an_interrupt_ends_with_the_numbers_found_so_far() {
         assert_eq!(volume["target_met"], false);
     }
 }
+
+#[test]
+fn overlaps_names_pairs_that_share_volume() {
+    let desk = Desk::new();
+    let cube = |x: f64, size: f64| {
+        format!(
+            "multmatrix([[1, 0, 0, {x}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) {{ cube(size = {size}, center = true); }}\n"
+        )
+    };
+    let red = |inner: String| format!("color([1, 0, 0, 1]) {{ {inner} }}\n");
+    // Two that overlap by half a unit, one that touches, and one far away.
+    let all =
+        [red(cube(0.0, 2.0)), cube(1.0, 1.0), cube(2.0, 1.0), cube(9.0, 1.0)].concat();
+    desk.put("all.csg", &all);
+    let done = desk.run(&["overlaps", "all.csg", "--rel-tol", "1e-3"]);
+    assert_eq!(done.code, 1, "{}", done.err);
+    assert!(done.out.starts_with("#ff0000 and other  0.5"), "{}", done.out);
+    assert!(done.out.contains(", 0.500000 deep at 0."), "{}", done.out);
+    assert_eq!(done.out.lines().count(), 1);
+    let by_object =
+        ["overlaps", "all.csg", "--rel-tol", "1e-3", "--by", "objects", "--json"];
+    let done = json(&desk.run(&by_object).out);
+    assert_eq!(done["looked_at"], 4);
+    assert_eq!(done["overlaps"].as_array().map(Vec::len), Some(1));
+    assert!((number(&done["overlaps"][0]["volume"]["value"]) - 0.5).abs() < 2e-3);
+    desk.put("apart.csg", &[cube(0.0, 1.0), cube(1.0, 1.0), cube(5.0, 1.0)].concat());
+    let done = desk.run(&["overlaps", "apart.csg"]);
+    assert_eq!((done.code, &*done.out), (0, "none of the 3 overlaps another\n"));
+}

@@ -15,6 +15,7 @@ mod measure;
 mod meter;
 mod numbers;
 mod output;
+mod overlaps;
 mod ray;
 mod render;
 mod report;
@@ -95,6 +96,7 @@ enum Command {
     Measure(measure::Measure),
     Merge(measure::Merge),
     Compare(compare::Compare),
+    Overlaps(overlaps::Overlaps),
 }
 
 /// What a command that could be done answers.
@@ -115,6 +117,7 @@ impl Command {
             Self::Measure(command) => command.run(global, out),
             Self::Merge(command) => command.run(global, out),
             Self::Compare(command) => command.run(global, out),
+            Self::Overlaps(command) => command.run(global, out),
         }
     }
 }

@@ -5,6 +5,7 @@ mod column;
 mod compare;
 mod estimate;
 mod lattice;
+mod overlap;
 mod properties;
 mod spread;
 mod volume;
@@ -12,6 +13,7 @@ mod volume;
 pub use compare::{Comparison, Verdict, Worst, compare, compare_with};
 pub use estimate::{Estimate, Method};
 pub use lattice::Sampling;
+pub use overlap::{Deepest, Overlap, overlaps};
 pub use properties::{
     Body, Mass, MergeError, Principal, Properties, Quantity, Replicate, Run, mass, merge,
     properties, run,

@@ -66,7 +66,7 @@ fn density(text: &str) -> Result<Density, String> {
 }
 
 /// What a part is called in reports and in `--density`: its name, or else its colour.
-fn label(part: &Part) -> String {
+pub(super) fn label(part: &Part) -> String {
     if let Some(name) = &part.name {
         return name.to_string();
     }
