@@ -3,8 +3,10 @@
 //! It knows boxes and numbers of items, nothing of what is in the boxes. A node holds the
 //! boxes of its eight children, which meet a line side by side.
 
+mod around;
 mod build;
 mod probe;
+mod split;
 #[cfg(test)]
 mod tests;
 mod visit;
@@ -14,13 +16,12 @@ use glam::DVec3;
 use crate::aabb::Aabb;
 use crate::eight::{EIGHT, Eight, WithEight, with_eight};
 use crate::lanes::Lanes;
-use build::{Around, Boxed};
+use around::{Around, Boxed};
 pub(crate) use probe::Probe;
 
 /// Boxes in a tree whose ends hold one item each, or several that have a number together.
 ///
-/// 256 bytes a node. Where ends are divided from eight items on there are at most two nodes
-/// for seven ends in all but adversarial cases.
+/// 256 bytes a node. There is a node for every five ends or so.
 #[derive(Debug)]
 pub(crate) struct Bvh {
     bounds: Aabb,
@@ -30,8 +31,8 @@ pub(crate) struct Bvh {
     nodes: Vec<Node>,
     /// The children of the root with boxes of double precision, if they are all ends.
     few: Vec<(u32, Aabb)>,
-    /// How many nodes there are on the longest way down.
-    depth: usize,
+    /// How many nodes and ends can be waiting while those below another are visited.
+    waiting: usize,
 }
 
 /// Up to eight children and their boxes, in the units of the tree, rounded outward; whole
@@ -90,7 +91,7 @@ impl Bvh {
             .map(|(item, bounds)| Boxed { around: unit.around(&bounds), item })
             .collect();
         let mut numbers = Vec::new();
-        let (nodes, depth) = build::tree(&mut boxed, most, |items| {
+        let (nodes, waiting) = build::tree(&mut boxed, most, |items| {
             numbers.clear();
             numbers.extend(items.iter().map(|boxed| boxed.item));
             end(&numbers)
@@ -99,7 +100,7 @@ impl Bvh {
             [root] => root.ends(&unit, &bounds),
             _ => Vec::new(),
         };
-        Self { bounds, reach: bounds.reach(), unit, nodes, few, depth }
+        Self { bounds, reach: bounds.reach(), unit, nodes, few, waiting }
     }
 
     /// Its frame.
@@ -257,7 +258,10 @@ impl Node {
     }
 
     fn child(&self, slot: usize) -> Around {
-        let [low, high] = [0, 1].map(|side| self.planes.map(|on| on[side][slot]));
+        let [low, high] = [0, 1].map(|side| {
+            let [x, y, z] = self.planes.map(|on| on[side][slot]);
+            [x, y, z, 0.0]
+        });
         Around { low, high }
     }
 }
@@ -285,15 +289,17 @@ impl Unit {
     }
 
     fn around(&self, b: &Aabb) -> Around {
+        let (low, high) = (self.point(b.min), self.point(b.max));
         Around {
-            low: self.point(b.min).to_array().map(rounded_down),
-            high: self.point(b.max).to_array().map(|x| -rounded_down(-x)),
+            low: low.extend(0.0).to_array().map(rounded_down),
+            high: high.extend(0.0).to_array().map(|x| -rounded_down(-x)),
         }
     }
 
     fn aabb(&self, around: &Around) -> Aabb {
-        let corner =
-            |p: [f32; 3]| DVec3::from_array(p.map(f64::from)) / self.scale + self.center;
+        let corner = |[x, y, z, _]: [f32; 4]| {
+            DVec3::from_array([x, y, z].map(f64::from)) / self.scale + self.center
+        };
         Aabb::new(corner(around.low), corner(around.high))
     }
 }

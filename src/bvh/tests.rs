@@ -24,6 +24,15 @@ fn boxes() -> impl Strategy<Value = Vec<Aabb>> {
         .prop_map(|(boxes, times)| boxes.repeat(times))
 }
 
+/// Boxes of which each split parts few from many: each is half as far away as the one before.
+fn boxes_in_a_row() -> impl Strategy<Value = Vec<Aabb>> {
+    let direction = prop_oneof![Just(DVec3::X), Just(DVec3::ONE), vector()];
+    (direction, prop_oneof![Just(0.0), 0.0..2.0], 1..300).prop_map(|(dir, size, n)| {
+        let place = |i: i32| 0.5_f64.powi(i) * dir;
+        (0..n).map(|i| Aabb::around([place(i), (1.0 + size) * place(i)])).collect()
+    })
+}
+
 /// Where in space, and how large, and how far away the line's origin is.
 fn frames() -> impl Strategy<Value = (f64, DVec3, f64)> {
     let scale = prop_oneof![Just(1.0), Just(1e-200), Just(1e150), Just(3e-5)];
@@ -85,5 +94,51 @@ proptest! {
         for (b, visited) in boxes.iter().zip(visited) {
             prop_assert!(visited || b.intersection(place).is_empty(), "{b:?}");
         }
+    }
+
+    /// Boxes hold what is below them, each item is at one end, and neither the way down nor
+    /// what is waiting is longer than it should be.
+    #[test]
+    fn boxes_hold_what_is_below_them(
+        boxes in prop_oneof![boxes(), boxes_in_a_row()],
+        (scale, offset, _) in frames(),
+        most in 1..=EIGHT,
+    ) {
+        let boxes: Vec<Aabb> = boxes
+            .iter()
+            .map(|b| Aabb::new(scale * (b.min + offset), scale * (b.max + offset)))
+            .collect();
+        let mut ends: Vec<Vec<u32>> = Vec::new();
+        let tree = Bvh::grouped((0..).zip(boxes.iter().copied()), most, |items| {
+            ends.push(items.to_vec());
+            count(ends.len() - 1)
+        });
+        let holds = |outer: &Around, inner: &Around| {
+            (0..3).all(|k| outer.low[k] <= inner.low[k] && outer.high[k] >= inner.high[k])
+        };
+        let everything = Around { low: [-2.0; 4], high: [2.0; 4] };
+        let mut open = vec![(0, everything, 1, 0)];
+        let mut all = Vec::new();
+        while let Some((node, outer, depth, waiting)) = open.pop() {
+            let node = &tree.nodes[node as usize];
+            let used = node.children.iter().filter(|&&child| child != NONE).count();
+            prop_assert!(depth <= 32 + boxes.len().max(1).ilog2() as usize + 1);
+            prop_assert!(waiting <= tree.waiting);
+            prop_assert!(used > 1 || boxes.len() <= most);
+            for (slot, &child) in node.children.iter().enumerate().take(used) {
+                let around = node.child(slot);
+                prop_assert!(holds(&outer, &around));
+                if child & END == 0 {
+                    open.push((child, around, depth + 1, waiting + used - 1));
+                    continue;
+                }
+                for &i in &ends[(child & !END) as usize] {
+                    prop_assert!(holds(&around, &tree.unit.around(&boxes[i as usize])));
+                    all.push(i);
+                }
+            }
+        }
+        all.sort_unstable();
+        prop_assert!(all.into_iter().eq(0..count(boxes.len())));
     }
 }

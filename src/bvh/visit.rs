@@ -45,10 +45,9 @@ impl Bvh {
         self.visit_in_order(simd, probe, visitor, later);
     }
 
-    /// How many nodes and ends can be waiting: all children but one on each level, and all
-    /// on the last.
+    /// How many nodes and ends can be waiting, those of a last node among them.
     fn room(&self) -> usize {
-        (EIGHT - 1) * self.depth + EIGHT
+        self.waiting + EIGHT
     }
 
     #[inline(always)]

@@ -37,7 +37,8 @@ impl IndexedMesh {
         // Packs are made when the tree is there: it takes more memory to be made than to be
         // kept.
         let mut in_order = Vec::with_capacity(mesh.faces().len());
-        let mut ends = vec![0];
+        let mut ends = Vec::with_capacity(mesh.faces().len() / 4 + 2);
+        ends.push(0);
         let faces = Bvh::grouped(boxes, EIGHT, |faces| {
             in_order.extend_from_slice(faces);
             ends.push(in_order.len());
