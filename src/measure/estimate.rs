@@ -31,6 +31,9 @@ pub enum Method {
     Exact,
     /// From randomly shifted Fibonacci lattices of parallel rays.
     Lattice,
+    /// From rays in slices between the places where the slices change; see
+    /// [`adaptive`](super::adaptive).
+    Adaptive,
 }
 
 impl Method {
@@ -39,6 +42,7 @@ impl Method {
         match self {
             Self::Exact => "exact",
             Self::Lattice => "lattice",
+            Self::Adaptive => "adaptive",
         }
     }
 }

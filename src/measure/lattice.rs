@@ -253,7 +253,7 @@ fn part<S, T: Tally>(
 
 /// The results of tasks `0..count`, in order, from as many threads as there are.
 #[cfg(feature = "parallel")]
-fn in_order<S, T: Send>(
+pub(super) fn in_order<S, T: Send>(
     count: u64,
     scratch: &(impl Fn() -> S + Sync + Send),
     task: impl Fn(&mut S, u64) -> T + Sync + Send,
@@ -267,7 +267,7 @@ fn in_order<S, T: Send>(
 
 /// The results of tasks `0..count`, in order.
 #[cfg(not(feature = "parallel"))]
-fn in_order<S, T: Send>(
+pub(super) fn in_order<S, T: Send>(
     count: u64,
     scratch: &(impl Fn() -> S + Sync + Send),
     task: impl Fn(&mut S, u64) -> T + Sync + Send,

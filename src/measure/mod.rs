@@ -1,5 +1,6 @@
 //! Numbers: volume, and how much two solids differ, each with an interval that is true.
 
+mod adaptive;
 mod beam;
 mod column;
 mod compare;
@@ -10,6 +11,7 @@ mod properties;
 mod spread;
 mod volume;
 
+pub use adaptive::{Unsuited, adaptive, adaptive_with};
 pub use compare::{Comparison, Verdict, Worst, compare, compare_with};
 pub use estimate::{Estimate, Method};
 pub use lattice::Sampling;

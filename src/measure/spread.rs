@@ -4,7 +4,7 @@
 pub(super) const REPLICATES: usize = 16;
 
 /// The 97.5 % quantile of Student's t with 15 degrees of freedom.
-const T_QUANTILE: f64 = 2.131_449_545_559_323;
+pub(super) const T_QUANTILE: f64 = 2.131_449_545_559_323;
 
 /// Fewer rays than this that meet the solid, in any replicate, and the spread between
 /// replicates says nothing about the error.

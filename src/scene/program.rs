@@ -86,6 +86,25 @@ impl Program {
         counts
     }
 
+    /// Whether the root is true where some leaves are inside. The counts are scratch memory.
+    pub(crate) fn evaluate(
+        &self,
+        literals: &[Literal],
+        counts: &mut Vec<u32>,
+        is_inside: impl Fn(usize) -> bool,
+    ) -> bool {
+        counts.clear();
+        counts.resize(self.nodes.len(), 0);
+        for (leaf, literal) in literals.iter().enumerate() {
+            counts[literal.parent as usize] +=
+                u32::from(is_inside(leaf) != literal.complement);
+        }
+        for (i, node) in self.nodes.iter().enumerate().skip(1).rev() {
+            counts[node.parent as usize] += u32::from(counts[i] >= node.need);
+        }
+        self.root(counts)
+    }
+
     /// A box around where the root is true, from the boxes of the leaves.
     ///
     /// `cutters` are boxes that complements fill: a solid is smaller by what a box cuts off it

@@ -33,7 +33,7 @@ mod watertight;
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::aabb::Aabb;
 use crate::lanes::whole;
@@ -241,6 +241,22 @@ impl Shape {
                 Some(planes) if face > 0 => of_plane(&planes[(face as usize - 1) % 2]),
                 _ => (Identity::Wall(leaf.wall.numbers()), false),
             },
+        }
+    }
+
+    /// The ten coefficients of a face's equation at `origin + map · s`: of s₀², s₁², s₂², s₀s₁,
+    /// s₁s₂, s₂s₀, s₀, s₁, s₂ and 1; none for meshes.
+    pub(crate) fn form(&self, face: u32, origin: DVec3, map: DMat3) -> Option<[f64; 10]> {
+        match self {
+            Self::Cuboid(leaf) => Some(leaf.planes[face as usize % 6].form(origin, map)),
+            Self::HalfSpace(leaf) => Some(leaf.planes[0].form(origin, map)),
+            Self::Polyhedron(_) => None,
+            Self::Quadric(leaf) => Some(match &leaf.planes {
+                Some(planes) if face > 0 => {
+                    planes[(face as usize - 1) % 2].form(origin, map)
+                }
+                _ => leaf.wall.form(origin, map),
+            }),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Planes in world coordinates, and what lies on the inner side of all of some.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::doubt::{Local, Spot, U};
 use super::line::{Line, Rays};
@@ -64,6 +64,13 @@ impl Plane {
     pub(crate) fn numbers(&self) -> [f64; 4] {
         let DVec3 { x, y, z } = self.normal;
         [x, y, z, self.offset]
+    }
+
+    /// The equation at `origin + map · s`, with coefficients as those of a wall.
+    pub(super) fn form(&self, origin: DVec3, map: DMat3) -> [f64; 10] {
+        let slope = map.transpose() * self.normal;
+        let value = self.normal.dot(origin) - self.offset;
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, slope.x, slope.y, slope.z, value]
     }
 
     /// The outward normal.

@@ -321,7 +321,7 @@ impl Wall {
 
     /// The ten coefficients of the equation at `origin + map · s`: of s₀², s₁², s₂², s₀s₁,
     /// s₁s₂, s₂s₀, s₀, s₁, s₂ and 1.
-    fn form(&self, origin: DVec3, map: DMat3) -> [f64; 10] {
+    pub(super) fn form(&self, origin: DVec3, map: DMat3) -> [f64; 10] {
         let [a, b, _] = self.profile.coefficients();
         let (p, m) = (self.to_local.point(origin), self.to_local.linear * map);
         let weigh = |v: DVec3| DVec3::new(v.x, v.y, -a * v.z);
