@@ -193,3 +193,24 @@ fn overlaps_names_pairs_that_share_volume() {
     let done = desk.run(&["overlaps", "apart.csg"]);
     assert_eq!((done.code, &*done.out), (0, "none of the 3 overlaps another\n"));
 }
+
+#[test]
+fn volumes_are_found_to_many_digits_where_surfaces_are_few() {
+    let desk = Desk::new();
+    let adaptive = ["volume", "ball.csg", "--method", "adaptive", "--rel-tol", "1e-12"];
+    let done = desk.run(&[&adaptive[..], &["--json"]].concat());
+    let found = json(&done.out);
+    let truth = 36.0 * std::f64::consts::PI;
+    assert!((number(&found["value"]) - truth).abs() < 1e-12 * truth, "{}", done.out);
+    assert_eq!(
+        (&found["method"], &found["target_met"]),
+        (&"adaptive".into(), &true.into())
+    );
+    desk.put(
+        "mesh.off",
+        "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n",
+    );
+    let done = desk.run(&["volume", "mesh.off", "--method", "adaptive"]);
+    assert_eq!(done.code, 2);
+    assert!(done.err.contains("--method adaptive: "), "{}", done.err);
+}
