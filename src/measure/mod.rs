@@ -1,4 +1,5 @@
-//! Numbers: volume, and how much two solids differ, each with an interval that is true.
+//! Numbers: volume, surface, centroid and inertia, what solids share and how much they differ,
+//! each with an interval that is true.
 
 mod adaptive;
 mod beam;
