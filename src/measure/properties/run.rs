@@ -67,7 +67,8 @@ impl Run {
     }
 }
 
-/// What [`properties`] has found so far, so that it can be combined with what other seeds find.
+/// What [`properties`](fn@crate::measure::properties) has found, so that it can be combined with
+/// what other seeds find.
 pub fn run(scene: &Scene, sampling: &Sampling, watch: Watch<'_>) -> Run {
     let bounds = scene.bounds();
     let run = Run {
