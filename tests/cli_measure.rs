@@ -150,9 +150,11 @@ fn an_interrupt_ends_with_the_numbers_found_so_far() {
             .stderr(Stdio::piped())
             .spawn()
             .expect("the program starts");
-        std::thread::sleep(std::time::Duration::from_millis(1500));
-        let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-        assert!(kill.expect("there is such a program").success());
+        // Long enough for it to start on a busy machine.
+        std::thread::sleep(std::time::Duration::from_secs(3));
+        let kill = format!("kill -INT {}", child.id());
+        let kill = Command::new("sh").args(["-c", &kill]).status();
+        assert!(kill.expect("there is a shell").success());
         let output = child.wait_with_output().expect("it ends");
         assert!(output.status.success(), "{output:?}");
         let found = json(&String::from_utf8(output.stdout).expect("text"));
