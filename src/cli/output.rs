@@ -64,7 +64,8 @@ pub(super) fn number(value: f64, half_width: f64) -> String {
         return format!("{value}");
     }
     let decimals = decimals(half_width);
-    if decimals > 12 || value.abs() >= 1e15 {
+    // From 100 on an error bar has more digits in front of the point than it is worth.
+    if decimals > 12 || half_width >= 99.5 {
         let digits = (value.abs() / half_width).max(1.0).log10().floor() + 1.0;
         let digits = decimals_of(digits);
         return format!("{value:.digits$e} ± {half_width:.1e}");
@@ -169,6 +170,8 @@ mod tests {
         assert_eq!(in_words(&estimate(113.097_335, 0.0123)), "113.097 ± 0.012 (95 %)");
         assert_eq!(in_words(&estimate(113_097.335, 12.3)), "113097 ± 12 (95 %)");
         assert_eq!(in_words(&estimate(8.0, 0.0)), "8");
+        let large = estimate(4_581_056_081.0, 635_555.0);
+        assert_eq!(in_words(&large), "4.5811e9 ± 6.4e5 (95 %)");
         assert_eq!(in_words(&estimate(8.627e-14, 2.4e-15)), "8.63e-14 ± 2.4e-15 (95 %)");
     }
 }

@@ -133,6 +133,11 @@ fn print(found: &[Overlap], names: &[String], out: &mut dyn Write) -> anyhow::Re
     }
     for overlap in found {
         let [a, b] = overlap.pair.map(|i| &names[i]);
+        if overlap.volume.value == 0.0 {
+            let most = overlap.volume.interval[1];
+            writeln!(out, "{a} and {b}  nothing was found: at most {most:.3e} (95 %)")?;
+            continue;
+        }
         write!(out, "{a} and {b}  {}", in_words(&overlap.volume))?;
         match overlap.deepest {
             Some(deepest) => {
