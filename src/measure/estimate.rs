@@ -27,7 +27,7 @@ pub struct Estimate {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// By a formula, without rays: the interval has no width.
+    /// By a formula, without rays: the interval is that of rounding.
     Exact,
     /// From randomly shifted Fibonacci lattices of parallel rays.
     Lattice,

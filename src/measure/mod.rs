@@ -6,15 +6,18 @@ mod beam;
 mod column;
 mod compare;
 mod estimate;
+mod exact;
 mod lattice;
 mod overlap;
 mod properties;
+mod rounded;
 mod spread;
 mod volume;
 
 pub use adaptive::{Unsuited, adaptive, adaptive_with};
 pub use compare::{Comparison, Verdict, Worst, compare, compare_with};
 pub use estimate::{Estimate, Method};
+pub use exact::exact;
 pub use lattice::Sampling;
 pub use overlap::{Deepest, Overlap, overlaps};
 pub use properties::{

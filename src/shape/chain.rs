@@ -44,6 +44,11 @@ impl Chain {
         }
     }
 
+    /// At most the Frobenius norm of the error of the linear part.
+    pub(crate) fn linear_error(&self) -> f64 {
+        self.linear
+    }
+
     /// At most how far rounding has moved the image of a point this far from the origin.
     pub(crate) fn error(&self, distance: f64) -> f64 {
         self.linear * distance + self.translation
