@@ -7,7 +7,7 @@ pub struct Estimate {
     pub value: f64,
     /// The 95 % interval.
     pub interval: [f64; 2],
-    /// How many rays were spent, those of earlier rounds included.
+    /// How many rays were spent, those of earlier rounds included; or points.
     pub rays: u64,
     /// How it was measured.
     pub method: Method,
@@ -34,6 +34,8 @@ pub enum Method {
     /// From rays in slices between the places where the slices change; see
     /// [`adaptive`](super::adaptive).
     Adaptive,
+    /// From random points.
+    Points,
 }
 
 impl Method {
@@ -43,6 +45,7 @@ impl Method {
             Self::Exact => "exact",
             Self::Lattice => "lattice",
             Self::Adaptive => "adaptive",
+            Self::Points => "points",
         }
     }
 }

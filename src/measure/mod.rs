@@ -3,12 +3,14 @@
 
 mod adaptive;
 mod beam;
+mod binomial;
 mod column;
 mod compare;
 mod estimate;
 mod exact;
 mod lattice;
 mod overlap;
+mod points;
 mod properties;
 mod rounded;
 mod spread;
@@ -20,6 +22,7 @@ pub use estimate::{Estimate, Method};
 pub use exact::exact;
 pub use lattice::Sampling;
 pub use overlap::{Deepest, Overlap, overlaps};
+pub use points::points;
 pub use properties::{
     Body, Mass, MergeError, Principal, Properties, Quantity, Replicate, Run, mass, merge,
     properties, run,
