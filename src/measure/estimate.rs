@@ -5,9 +5,9 @@
 pub struct Estimate {
     /// The best guess, in model units to the power that fits.
     pub value: f64,
-    /// The 95 % interval.
+    /// The 95 % interval, or a certain one: [`Method`] says which.
     pub interval: [f64; 2],
-    /// How many rays were spent, those of earlier rounds included; or points.
+    /// How many rays were spent, those of earlier rounds included; or points, or cells.
     pub rays: u64,
     /// How it was measured.
     pub method: Method,
@@ -36,6 +36,8 @@ pub enum Method {
     Adaptive,
     /// From random points.
     Points,
+    /// From cells that are certainly inside or outside: the interval is certain.
+    Bracket,
 }
 
 impl Method {
@@ -46,6 +48,7 @@ impl Method {
             Self::Lattice => "lattice",
             Self::Adaptive => "adaptive",
             Self::Points => "points",
+            Self::Bracket => "bracket",
         }
     }
 }

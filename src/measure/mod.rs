@@ -4,6 +4,7 @@
 mod adaptive;
 mod beam;
 mod binomial;
+mod bracket;
 mod column;
 mod compare;
 mod estimate;
@@ -17,6 +18,7 @@ mod spread;
 mod volume;
 
 pub use adaptive::{Unsuited, adaptive, adaptive_with};
+pub use bracket::bracket;
 pub use compare::{Comparison, Verdict, Worst, compare, compare_with};
 pub use estimate::{Estimate, Method};
 pub use exact::exact;

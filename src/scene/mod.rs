@@ -1,6 +1,7 @@
 //! Compiled scenes: flat, checked, never changed, shared between threads.
 
 mod beam;
+mod blocks;
 mod certainty;
 mod classify;
 mod compile;
@@ -29,6 +30,7 @@ use crate::ray::{Crossing, Ray, Sense};
 use crate::shape::{Line, Shape, Spot, Stage, inverse_power_of_two};
 use crate::solid::{Place, Solid};
 pub(crate) use beam::{Bunch, BunchTracer, Chords, Places, SIDE, Tile, TileTracer};
+pub(crate) use blocks::{Blocks, Found, Leaves};
 pub use classify::Membership;
 pub use compile::{CompileError, LeafName};
 pub(crate) use equations::{Equations, MOST_SURFACES, NotFew};

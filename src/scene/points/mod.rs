@@ -29,6 +29,7 @@ use crate::shape::U;
 pub(super) use alone::Around;
 pub(super) use cells::Cells;
 use chunk::Chunks;
+pub(super) use raster::is_inside;
 
 #[cfg(doc)]
 use super::trace::PROBE;

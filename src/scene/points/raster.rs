@@ -161,7 +161,7 @@ impl Raster {
 }
 
 /// Whether a point is inside of a leaf, as the line through it says.
-fn is_inside(scene: &Scene, leaf: u32, point: DVec3) -> bool {
+pub(in super::super) fn is_inside(scene: &Scene, leaf: u32, point: DVec3) -> bool {
     let Some(line) = Line::new(&Ray::new(point, PROBE), &scene.stage) else {
         return false;
     };
