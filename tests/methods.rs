@@ -103,6 +103,9 @@ fn unions_of_leaves_that_are_apart_have_formulas() {
         Solid::ball(1.0) + tilted(Solid::cuboid(DVec3::ONE)).translated(3.0 * DVec3::X);
     assert!((exact(&apart).value - 4.0 / 3.0 * PI - 1.0).abs() < 1e-13);
     assert!(holds(&exact(&Solid::empty()), 0.0));
+    if let Ok(nothing) = solidray::Mesh::new(Vec::new(), Vec::new()) {
+        assert!(holds(&exact(&Solid::mesh(nothing)), 0.0));
+    }
 }
 
 #[test]

@@ -60,6 +60,7 @@ fn leaves(solid: &Solid) -> Option<Vec<Boxed>> {
                 let volume = primitive::volume(shape)? * determinant(&chain);
                 leaves.push(Boxed::new(volume, &placed)?);
             }
+            Kind::Mesh(mesh) if mesh.faces().is_empty() => {}
             Kind::Mesh(mesh) => {
                 let volume = star::volume(mesh)? * determinant(&chain);
                 let placed =
