@@ -136,6 +136,15 @@ impl Reading {
 
     /// Reads and compiles a model.
     pub(super) fn load(&self, file: &Path, global: Global) -> anyhow::Result<Loaded> {
+        Ok(self.load_and_keep(file, global)?.0)
+    }
+
+    /// The same, and the solid that was compiled, which takes memory.
+    pub(super) fn load_and_keep(
+        &self,
+        file: &Path,
+        global: Global,
+    ) -> anyhow::Result<(Loaded, Solid)> {
         let start = Instant::now();
         let model = self.read(file, global)?;
         let read_seconds = start.elapsed().as_secs_f64();
@@ -145,7 +154,7 @@ impl Reading {
         if scene.bounds().is_empty() && !global.quiet {
             report::note(&format!("warning: {}: the model is empty", file.display()));
         }
-        Ok(Loaded { scene, read_seconds, compile_seconds })
+        Ok((Loaded { scene, read_seconds, compile_seconds }, model.solid))
     }
 
     /// Compiles a model; an error begins with the file's name.

@@ -7,7 +7,7 @@ use anyhow::Context;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use solidray::Aabb;
-use solidray::measure::Estimate;
+use solidray::measure::{Estimate, Method};
 
 /// The version of the JSON that commands print: names keep their meaning within one.
 pub(super) const SCHEMA: u32 = 1;
@@ -54,8 +54,14 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
         return format!("not resolved: at most {:.3e} (95 %)", estimate.interval[1]);
     }
     let half_width = estimate.half_width();
-    let percent = if half_width == 0.0 { "" } else { " (95 %)" };
-    format!("{}{percent}", number(estimate.value, half_width))
+    let kind = match estimate.method {
+        _ if half_width == 0.0 => "",
+        Method::Lattice | Method::Points => " (95 %)",
+        Method::Bracket => " (certain)",
+        Method::Exact => " (rounding)",
+        Method::Adaptive | _ => " (estimated)",
+    };
+    format!("{}{kind}", number(estimate.value, half_width))
 }
 
 /// Digits that were earned, then the half width of the interval, if it has any.
@@ -153,7 +159,6 @@ fn write_beside(target: &Path, bytes: &[u8]) -> std::io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use solidray::measure::Method;
 
     #[test]
     fn only_digits_that_were_earned_are_shown() {

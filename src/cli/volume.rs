@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use solidray::measure;
+use solidray::measure::{self, Method};
 
 use super::input::Reading;
 use super::interrupt;
@@ -44,6 +44,23 @@ enum MethodArg {
     /// for many digits of solids with few surfaces and no meshes. A result that the
     /// lattices contradict is not given: then it is theirs, and so it is beyond the limits
     Adaptive,
+    /// Certain bounds, rounding included, from cells that are inside, outside or cut; --max-rays
+    /// limits the cells
+    Bracket,
+    /// Random points, as a baseline; --max-rays limits the points
+    Points,
+    /// By formulas, without rays: for single primitives, star-shaped meshes, and unions of these
+    /// that are apart
+    Exact,
+}
+
+/// What a method takes many of.
+fn samples(method: Method) -> &'static str {
+    match method {
+        Method::Points => "points",
+        Method::Bracket => "cells",
+        Method::Exact | Method::Lattice | Method::Adaptive | _ => "rays",
+    }
 }
 
 #[derive(Serialize)]
@@ -61,7 +78,7 @@ impl Volume {
         global: Global,
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
-        let loaded = self.reading.load(&self.file, global)?;
+        let (loaded, solid) = self.reading.load_and_keep(&self.file, global)?;
         let sampling = self.sampling.meant();
         let start = Instant::now();
         let meter = Meter::new(global, "measuring", None);
@@ -76,6 +93,10 @@ impl Volume {
                 measure::adaptive_with(&loaded.scene, &sampling, &watch)
                     .context("--method adaptive")?
             }
+            MethodArg::Bracket => measure::bracket(&loaded.scene, &sampling, &watch),
+            MethodArg::Points => measure::points(&loaded.scene, &sampling, &watch),
+            MethodArg::Exact => measure::exact(&solid)
+                .context("--method exact: there is no formula for this solid")?,
         };
         drop(meter);
         let seconds = start.elapsed().as_secs_f64();
@@ -88,13 +109,15 @@ impl Volume {
         writeln!(out, "{}", in_words(&volume))?;
         if !volume.target_met && !global.quiet {
             super::report::note(&format!(
-                "the relative tolerance {:e} was not met with {} rays: allow more with --max-rays or --time-limit",
-                sampling.rel_tol, volume.rays
+                "the relative tolerance {:e} was not met with {} {}: allow more with --max-rays or --time-limit",
+                sampling.rel_tol,
+                volume.rays,
+                samples(volume.method)
             ));
         }
         if global.verbose {
             writeln!(out, "method    {}", volume.method.name())?;
-            writeln!(out, "rays      {}", volume.rays)?;
+            writeln!(out, "{:9} {}", samples(volume.method), volume.rays)?;
             let measure::Estimate { spans, uncertain, .. } = volume;
             writeln!(out, "spans     {}", uncertain_in_words(spans, uncertain))?;
             writeln!(
