@@ -10,7 +10,6 @@ use serde::Serialize;
 use solidray::measure::{self, Comparison, Verdict, Worst};
 
 use super::input::Reading;
-use super::interrupt;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, point};
 use super::sampling::{SamplingArgs, positive};
@@ -73,13 +72,9 @@ impl Compare {
             self.reading.compile(file, solid)?;
         }
         let start = Instant::now();
-        let meter = Meter::new(global, "comparing", None);
+        let meter = Meter::interruptible(global, "comparing")?;
         let sampling = self.sampling.meant();
-        let interrupted = interrupt::watched()?;
-        let watch = |rays| {
-            meter.tick(rays);
-            interrupt::flow(interrupted)
-        };
+        let watch = |rays| meter.step(rays);
         let found = measure::compare_with(
             &a,
             &b,

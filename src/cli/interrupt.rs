@@ -1,12 +1,11 @@
 //! Ctrl-C while something is measured: the first ends the work, the second the program.
 
-use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// From now on the first Ctrl-C is for whoever asks the function.
-pub(super) fn watched() -> anyhow::Result<impl Fn() -> bool + Sync + Copy> {
+/// From now on the first Ctrl-C is for whoever asks.
+pub(super) fn watch() -> anyhow::Result<()> {
     ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             /// What shells report of a program that Ctrl-C has ended.
@@ -14,10 +13,10 @@ pub(super) fn watched() -> anyhow::Result<impl Fn() -> bool + Sync + Copy> {
             std::process::exit(ENDED);
         }
     })?;
-    Ok(|| INTERRUPTED.load(Ordering::Relaxed))
+    Ok(())
 }
 
-/// Whether to go on.
-pub(super) fn flow(interrupted: impl Fn() -> bool) -> ControlFlow<()> {
-    if interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+/// Whether there was one.
+pub(super) fn interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
 }

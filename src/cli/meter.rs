@@ -1,11 +1,13 @@
 //! Progress on standard error, for what takes longer than a second, on a terminal only.
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::Global;
+use super::interrupt::{self, interrupted};
 
 /// Work shorter than this shows nothing.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -32,6 +34,21 @@ impl Meter {
         bar.set_message(what);
         let wanted = !global.quiet;
         Self { bar, start: Instant::now(), wanted, shown: AtomicBool::new(false) }
+    }
+
+    /// A count of work that the first Ctrl-C stops.
+    pub(super) fn interruptible(
+        global: Global,
+        what: &'static str,
+    ) -> anyhow::Result<Self> {
+        interrupt::watch()?;
+        Ok(Self::new(global, what, None))
+    }
+
+    /// So many rays more are done; whether to go on.
+    pub(super) fn step(&self, rays: u64) -> ControlFlow<()> {
+        self.tick(rays);
+        if interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     /// So many rays more are done.

@@ -10,7 +10,7 @@ use solidray::measure::{self, Overlap};
 use solidray::{Place, Solid};
 
 use super::input::Reading;
-use super::interrupt;
+use super::interrupt::interrupted;
 use super::measure::label;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, point};
@@ -71,12 +71,8 @@ impl Overlaps {
         let solid = self.reading.read(&self.file, global)?.solid;
         self.reading.compile(&self.file, &solid)?;
         let (names, solids) = self.pieces(&solid);
-        let interrupted = interrupt::watched()?;
-        let meter = Meter::new(global, "comparing", None);
-        let watch = |rays| {
-            meter.tick(rays);
-            interrupt::flow(interrupted)
-        };
+        let meter = Meter::interruptible(global, "comparing")?;
+        let watch = |rays| meter.step(rays);
         let (options, sampling) = (self.reading.compiling(), self.sampling.meant());
         let found = measure::overlaps(&solids, &options, &sampling, &watch)?;
         drop(meter);

@@ -10,7 +10,6 @@ use serde::Serialize;
 use solidray::measure::{self, Method};
 
 use super::input::Reading;
-use super::interrupt;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, uncertain_in_words};
 use super::sampling::SamplingArgs;
@@ -81,12 +80,8 @@ impl Volume {
         let (loaded, solid) = self.reading.load_and_keep(&self.file, global)?;
         let sampling = self.sampling.meant();
         let start = Instant::now();
-        let meter = Meter::new(global, "measuring", None);
-        let interrupted = interrupt::watched()?;
-        let watch = |rays| {
-            meter.tick(rays);
-            interrupt::flow(interrupted)
-        };
+        let meter = Meter::interruptible(global, "measuring")?;
+        let watch = |rays| meter.step(rays);
         let volume = match self.method {
             MethodArg::Lattice => measure::volume_with(&loaded.scene, &sampling, &watch),
             MethodArg::Adaptive => {

@@ -14,7 +14,7 @@ use solidray::measure::{self, Run, Sampling};
 use solidray::{Part, Scene, Solid};
 
 use super::input::Reading;
-use super::interrupt;
+use super::interrupt::interrupted;
 use super::meter::Meter;
 use super::sampling::SamplingArgs;
 use super::{Answer, Global, output};
@@ -95,12 +95,8 @@ impl Measure {
         let scene = self.reading.compile(&self.file, &solid)?;
         let parts = solid.parts();
         let densities = self.densities(&parts)?;
-        let interrupted = interrupt::watched()?;
-        let meter = Meter::new(global, "measuring", None);
-        let watch = |rays| {
-            meter.tick(rays);
-            interrupt::flow(interrupted)
-        };
+        let meter = Meter::interruptible(global, "measuring")?;
+        let watch = |rays| meter.step(rays);
         let sampling = self.sampling.meant();
         let seeds = sampling.seed..sampling.seed.saturating_add(self.seeds);
         let runs = |scene: &Scene, sampling: &dyn Fn(u64) -> Sampling| {
