@@ -7,6 +7,7 @@ mod check;
 mod error;
 mod fill;
 mod polygon;
+pub(crate) mod round;
 
 use std::fmt;
 

@@ -12,6 +12,7 @@
 
 mod error;
 mod faces;
+mod fineness;
 mod load;
 mod model;
 mod obj;
@@ -20,7 +21,6 @@ mod openscad;
 mod options;
 mod scad;
 mod stl;
-mod tessellate;
 mod turn;
 mod words;
 

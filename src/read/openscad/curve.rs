@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::super::error::{Located, ReadErrorKind};
+use super::super::fineness::Fineness;
 use super::super::options::Curves;
-use super::super::tessellate::{self, Fineness};
 use super::arguments::Call;
 use super::evaluate::Reading;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, round};
 use crate::solid::Solid;
 
 /// A faceted curve with all its sizes: equal ones share one mesh.
@@ -81,10 +81,10 @@ impl Round {
         let (sizes, triangles) = match self {
             // No frustum has its bottom above its top.
             Self::Ball { radius } => {
-                ([radius, radius, 1.0, -1.0], tessellate::ball_triangles(segments))
+                ([radius, radius, 1.0, -1.0], round::ball_triangles(segments))
             }
             Self::Frustum { radii: [a, b], heights: [low, high] } => {
-                ([a, b, low, high], tessellate::frustum_triangles(segments))
+                ([a, b, low, high], round::frustum_triangles(segments))
             }
         };
         let key = Key { segments, sizes: sizes.map(f64::to_bits) };
@@ -94,10 +94,8 @@ impl Round {
         reading.count_facets(triangles, call.place())?;
         let fault = |kind| Located::at(call.place(), kind);
         let mesh = match self {
-            Self::Ball { radius } => tessellate::ball(segments, radius),
-            Self::Frustum { radii, heights } => {
-                tessellate::frustum(segments, radii, heights)
-            }
+            Self::Ball { radius } => round::ball(segments, radius),
+            Self::Frustum { radii, heights } => round::frustum(segments, radii, heights),
         };
         let mesh = Arc::new(mesh.map_err(|e| fault(ReadErrorKind::Mesh(e)))?);
         reading.curves.insert(key, mesh.clone());

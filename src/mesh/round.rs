@@ -1,69 +1,23 @@
-//! Circles, cylinders and spheres with the vertices of OpenSCAD 2021.01.
-
-use std::f64::consts::TAU;
+//! Polyhedra for cylinders, cones and balls, with the vertices of OpenSCAD 2021.01.
 
 use glam::DVec3;
 
+use super::{Mesh, MeshError};
 use crate::angle::{cos_deg, sin_deg};
-use crate::mesh::{Mesh, MeshError};
-
-/// OpenSCAD's `$fn`, `$fa` and `$fs`, which say how fine a curve is cut.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Fineness {
-    /// `$fn`: the number of segments; 0 or less leaves it to the other two.
-    pub(super) count: f64,
-    /// `$fa`: the smallest angle of a segment, in degrees.
-    pub(super) angle: f64,
-    /// `$fs`: the smallest length of a segment.
-    pub(super) size: f64,
-}
-
-impl Fineness {
-    /// How many segments a circle gets.
-    pub(super) fn segments(&self, radius: f64) -> u32 {
-        /// The grid below which OpenSCAD takes points as equal.
-        const GRID: f64 = 1.0 / (1_u32 << 20) as f64;
-        if radius < GRID || !self.count.is_finite() {
-            return 3;
-        }
-        if self.count > 0.0 {
-            return whole(self.count.max(3.0));
-        }
-        let by_angle = 360.0 / self.angle.max(0.01);
-        let by_size = TAU * radius / self.size.max(0.01);
-        whole(by_angle.min(by_size).max(5.0).ceil())
-    }
-
-    /// The segments of a polygon that the author asked for: an explicit `$fn` up to 8.
-    pub(super) fn polygon(&self, radius: f64) -> Option<u32> {
-        let explicit = self.count > 0.0 && self.count < 9.0;
-        explicit.then(|| self.segments(radius))
-    }
-}
-
-/// The whole part of a number that is not negative.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "conversion saturates, which is as good as any number too large to build"
-)]
-fn whole(x: f64) -> u32 {
-    x as u32
-}
 
 /// Triangles of [`frustum`].
-pub(super) fn frustum_triangles(segments: u32) -> u64 {
+pub(crate) fn frustum_triangles(segments: u32) -> u64 {
     4 * u64::from(segments)
 }
 
 /// Triangles of [`ball`].
-pub(super) fn ball_triangles(segments: u32) -> u64 {
+pub(crate) fn ball_triangles(segments: u32) -> u64 {
     2 * u64::from(segments) * u64::from(rings(segments))
 }
 
 /// The frustum of a pyramid about the z-axis with corners on circles of these radii; one
 /// may be zero, which makes a point.
-pub(super) fn frustum(
+pub(crate) fn frustum(
     segments: u32,
     [bottom_radius, top_radius]: [f64; 2],
     [bottom, top]: [f64; 2],
@@ -80,7 +34,7 @@ pub(super) fn frustum(
 
 /// The polyhedron for a sphere: rings at the middles of equal angles from pole to pole,
 /// so that its ends are flat and lie within the sphere.
-pub(super) fn ball(segments: u32, radius: f64) -> Result<Mesh, MeshError> {
+pub(crate) fn ball(segments: u32, radius: f64) -> Result<Mesh, MeshError> {
     let mut points = Vec::new();
     let mut faces = Vec::new();
     let count = rings(segments);
