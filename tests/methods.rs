@@ -75,10 +75,18 @@ fn textbook() -> Vec<(&'static str, Solid, f64)> {
             cap(0.75),
         ),
         ("mesh", tilted(Solid::mesh(meshes::grid_box(-DVec3::ONE, DVec3::ONE, 2))), 8.0),
+        ("corner of a box", tilted(Solid::mesh(corner())), 1.0 / 6.0),
         ("tiny", Solid::ball(1e-9), ball * 1e-27),
         ("huge", tilted(Solid::cuboid(DVec3::splat(1e9))), 1e27),
         ("far away", Solid::ball(1.0).translated(dvec3(1e6, -2e5, 3e7)), ball),
     ]
+}
+
+/// A mesh that the middle of its box is not inside of.
+fn corner() -> solidray::Mesh {
+    let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    solidray::Mesh::new(points, faces).expect("it is closed")
 }
 
 #[test]

@@ -9,19 +9,39 @@ use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
 use super::super::rounded::{Rounded, Sum};
+use crate::aabb::Aabb;
 use crate::mesh::Mesh;
 use crate::shape::U;
 
 /// Sizes between which products of three coordinates are exact enough for the predicate.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
-/// The volume of a mesh that is star-shaped as seen from the middle of its box.
+/// The volume of a mesh that is star-shaped as seen from the middle of its box or from its
+/// centroid, which is inside every mesh that is convex.
 pub(super) fn volume(mesh: &Mesh) -> Option<Rounded> {
     let bounds = mesh.bounds();
     if bounds.is_empty() {
         return Some(Rounded::ZERO);
     }
-    let center = bounds.center();
+    let middle = bounds.center();
+    seen_from(mesh, middle, &bounds)
+        .or_else(|| seen_from(mesh, centroid(mesh, middle), &bounds))
+}
+
+/// The centroid of what a mesh encloses, more or less.
+fn centroid(mesh: &Mesh, origin: DVec3) -> DVec3 {
+    let (mut sum, mut volume) = (DVec3::ZERO, 0.0);
+    for face in 0..mesh.faces().len() {
+        let [a, b, c] = mesh.corners(face).map(|p| p - origin);
+        let sixth = a.dot(b.cross(c));
+        sum += 0.25 * sixth * (a + b + c);
+        volume += sixth;
+    }
+    origin + sum / volume
+}
+
+/// The volume of a mesh if it is star-shaped as seen from a point.
+fn seen_from(mesh: &Mesh, center: DVec3, bounds: &Aabb) -> Option<Rounded> {
     let is_fit = SIZES.contains(&bounds.size().min_element())
         && SIZES.contains(&bounds.size().max_element())
         && bounds.reach() < *SIZES.end();
