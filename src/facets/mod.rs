@@ -1,0 +1,46 @@
+//! Facets, for those who need some: curves as polyhedra, and a solid's surface as one mesh.
+//!
+//! Nothing else in this crate is made of facets. Here [`faceted`] replaces balls, cylinders
+//! and cones by the polyhedra that OpenSCAD makes of them, and [`boundary`] finds the
+//! surface of what is then made of meshes alone, by the Manifold library
+//! (<https://github.com/elalish/manifold>).
+
+mod boundary;
+mod replace;
+
+use thiserror::Error;
+
+pub use boundary::boundary;
+pub use replace::{Faceted, faceted};
+
+use crate::mesh::MeshError;
+
+/// Why a solid has no facets.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum FacetsError {
+    /// A leaf that OpenSCAD does not have, so that there are no polyhedra for it.
+    #[error("there are no facets for a {0}")]
+    NoFacets(&'static str),
+    /// Curves that few segments make of: they are not polygons.
+    #[error("a curve has at least 3 segments, not {0}")]
+    TooFewSegments(u32),
+    /// There would be too many of them.
+    #[error("there would be {count} triangles, which is more than the limit of {limit}")]
+    TooMany {
+        /// How many there would be.
+        count: u64,
+        /// How many there may be.
+        limit: u64,
+    },
+    /// A size that makes no polyhedron.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A mesh whose edges belong to more than two faces, or that is broken in another way
+    /// that Manifold does not take.
+    #[error("Manifold does not take a mesh of this solid: {0}")]
+    NotTaken(String),
+    /// It was told to stop.
+    #[error("stopped before all facets were found")]
+    Stopped,
+}
