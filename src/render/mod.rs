@@ -16,6 +16,8 @@
 
 mod camera;
 mod chunks;
+#[cfg(feature = "image")]
+mod coverage;
 mod frame;
 #[cfg(feature = "image")]
 mod light;
@@ -30,6 +32,8 @@ mod shade;
 mod view;
 
 pub use camera::{Camera, CameraError, Projection};
+#[cfg(feature = "image")]
+pub use coverage::coverage;
 pub use frame::{Frame, trace};
 #[cfg(feature = "image")]
 pub use look::Look;

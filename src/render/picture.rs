@@ -91,7 +91,7 @@ fn survey(scene: &Scene, view: &View, progress: Progress<'_>) -> Option<[f64; 2]
 }
 
 /// Ranges of rows, whole tiles high, that make up a picture.
-fn bands(size: [u32; 2]) -> impl Iterator<Item = std::ops::Range<u32>> {
+pub(super) fn bands(size: [u32; 2]) -> impl Iterator<Item = std::ops::Range<u32>> {
     let [width, height] = size;
     let tiles = (BAND_PIXELS / TILE / width.max(1)).max(1);
     let step = tiles * TILE;
@@ -108,7 +108,7 @@ fn bands(size: [u32; 2]) -> impl Iterator<Item = std::ops::Range<u32>> {
 /// rules", 1994; for pictures: Dammertz and Keller, "Image synthesis by rank-1 lattices",
 /// 2008); for other counts it stays as even, where lattices can fail (all those of 4
 /// points that fill rows and columns are diagonals).
-fn spread(count: u32) -> Vec<[f64; 2]> {
+pub(super) fn spread(count: u32) -> Vec<[f64; 2]> {
     const INVERSE_PHI: f64 = 0.618_033_988_749_894_9;
     let mut columns: Vec<(f64, u32)> =
         (0..count).map(|i| ((f64::from(i) * INVERSE_PHI).fract(), i)).collect();
