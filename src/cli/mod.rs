@@ -20,6 +20,7 @@ mod ray;
 mod render;
 mod report;
 mod sampling;
+mod tradeoff;
 mod volume;
 
 use std::ffi::OsString;
@@ -97,6 +98,7 @@ enum Command {
     Merge(measure::Merge),
     Compare(compare::Compare),
     Overlaps(overlaps::Overlaps),
+    Tradeoff(tradeoff::Tradeoff),
 }
 
 /// What a command that could be done answers.
@@ -118,6 +120,7 @@ impl Command {
             Self::Merge(command) => command.run(global, out),
             Self::Compare(command) => command.run(global, out),
             Self::Overlaps(command) => command.run(global, out),
+            Self::Tradeoff(command) => command.run(global, out),
         }
     }
 }
