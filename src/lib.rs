@@ -60,8 +60,7 @@
 //! # Features
 //!
 //! All are on by default. `parallel` uses all cores in [`measure`] and [`render`], with the
-//! same results to the last bit; `image` shades pictures; `facets` makes meshes of solids;
-//! `cli` is the program. Users of the
+//! same results to the last bit; `image` shades pictures; `cli` is the program. Users of the
 //! library alone take `default-features = false`.
 
 // Tests of private parts share models and meshes with tests from outside.
@@ -79,7 +78,6 @@ mod bvh;
 mod census;
 mod color;
 mod eight;
-#[cfg(feature = "facets")]
 pub mod facets;
 mod fan;
 mod lanes;

@@ -1,5 +1,4 @@
 //! Facets: the polyhedra that stand for curves, and the surfaces of solids as meshes.
-#![cfg(feature = "facets")]
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;

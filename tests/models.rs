@@ -102,7 +102,6 @@ fn faceted_models_have_the_volume_of_openscads_polyhedra() {
 }
 
 /// The volume that the surface of a solid of meshes encloses, which Manifold finds.
-#[cfg(feature = "facets")]
 fn enclosed(solid: &Solid) -> f64 {
     use solidray::facets::{boundary, faceted};
     let faceted = faceted(solid, 3, 1 << 22).expect("it has facets");
@@ -113,7 +112,6 @@ fn enclosed(solid: &Solid) -> f64 {
         .volume()
 }
 
-#[cfg(feature = "facets")]
 #[test]
 fn facets_given_to_manifold_have_the_recorded_volume() {
     for Reference { name, manifold: recorded, .. } in references() {
@@ -141,7 +139,6 @@ fn openscad() -> Option<&'static str> {
     found.then_some("openscad")
 }
 
-#[cfg(feature = "facets")]
 #[test]
 fn openscad_makes_the_same_volume_now_as_when_it_was_recorded() {
     let Some(program) = openscad() else { return };

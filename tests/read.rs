@@ -107,12 +107,8 @@ fn refused_csg_is_located() {
         ("/* ü */ é();", ":1:9: expected a statement, found `é`"),
         ("group() {\n\thull() { cube(1); }\n}", ":2:2: `hull` is not supported yet"),
         (
-            "linear_extrude(height = 1, twist = 9) square(1);",
-            ":1:1: `linear_extrude` with `twist` is not supported yet",
-        ),
-        (
-            "linear_extrude(height = 1, scale = [1, 0]) square(1);",
-            ":1:1: `linear_extrude` with `scale` is not supported yet",
+            "linear_extrude(height = 1, v = [0, 1, 1]) square(1);",
+            ":1:1: `linear_extrude` with `v` is not supported yet",
         ),
         ("import(\"a.dxf\");", ":1:1: import of `.dxf` files is not supported yet"),
         (

@@ -49,6 +49,15 @@ pub(super) struct Reading {
         help_heading = "Reading"
     )]
     max_facets: u64,
+    /// How far facets may be from curves that have no exact solid, as in twisted extrusions
+    #[arg(
+        long,
+        value_name = "LENGTH",
+        default_value_t = ReadOptions::default().facet_tolerance,
+        value_parser = super::sampling::positive,
+        help_heading = "Reading"
+    )]
+    facet_tolerance: f64,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
@@ -121,6 +130,7 @@ impl Reading {
             format: self.format.map(Format::from),
             max_bytes: self.max_bytes,
             max_facets: self.max_facets,
+            facet_tolerance: self.facet_tolerance,
         };
         if file.as_os_str() != "-" {
             return Ok(read::file(file, &options)?);

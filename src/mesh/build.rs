@@ -1,8 +1,8 @@
 //! Meshes from polygons, and outlines as prisms.
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
-use super::{Mesh, MeshError, fill, polygon};
+use super::{Ends, Mesh, MeshError, loft, polygon};
 
 impl Mesh {
     /// A mesh of points and faces with three or more corners, each face the indices of
@@ -47,27 +47,22 @@ impl Mesh {
     /// [`MeshError::NoFaces`] when the outline is empty, [`MeshError::NotFinite`], and
     /// [`MeshError::Tangled`] when paths cross too often to be told apart.
     pub fn prism(paths: &[Vec<DVec2>], bottom: f64, top: f64) -> Result<Self, MeshError> {
-        let fill::Fill { points: outline, triangles, boundary } = fill::even_odd(paths)?;
-        let Ok(lift) = u32::try_from(outline.len()) else {
-            let (count, limit) = (outline.len(), u32::MAX as usize);
-            return Err(MeshError::TooLarge { count, limit });
+        Self::tapered(paths, [bottom, top], [1.0; 2])
+    }
+
+    /// The same where the outline is scaled about the origin on the way from the bottom to the top,
+    /// by numbers that are not below zero.
+    pub(crate) fn tapered(
+        paths: &[Vec<DVec2>],
+        heights: [f64; 2],
+        scales: [f64; 2],
+    ) -> Result<Self, MeshError> {
+        let section = |i: usize| {
+            let mut map = DAffine3::from_scale(DVec3::new(scales[i], scales[i], 1.0));
+            map.translation.z = heights[i];
+            map
         };
-        let level = |z: f64| outline.iter().map(move |p| p.extend(z));
-        let points: Vec<DVec3> = level(bottom).chain(level(top)).collect();
-        if u32::try_from(points.len()).is_err() {
-            let (count, limit) = (points.len(), u32::MAX as usize);
-            return Err(MeshError::TooLarge { count, limit });
-        }
-        let mut faces = Vec::with_capacity(2 * (triangles.len() + boundary.len()));
-        for [a, b, c] in triangles {
-            faces.push([c, b, a]);
-            faces.push([a + lift, b + lift, c + lift]);
-        }
-        for [a, b] in boundary {
-            faces.push([a, b, b + lift]);
-            faces.push([a, b + lift, a + lift]);
-        }
-        Self::new(points, faces)
+        loft(paths, &[0, 1].map(section), Ends::Open)
     }
 }
 

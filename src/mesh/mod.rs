@@ -6,6 +6,7 @@ mod build;
 mod check;
 mod error;
 mod fill;
+mod loft;
 mod polygon;
 pub(crate) mod round;
 
@@ -16,6 +17,7 @@ use glam::DVec3;
 use crate::aabb::Aabb;
 pub(crate) use build::triangulated;
 pub use error::{MeshError, OpenEdge};
+pub(crate) use loft::{Ends, loft};
 
 /// A closed, oriented triangle mesh.
 ///

@@ -1,6 +1,6 @@
 //! Polyhedra for cylinders, cones and balls, with the vertices of OpenSCAD 2021.01.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::{Mesh, MeshError};
 use crate::angle::{cos_deg, sin_deg};
@@ -60,14 +60,23 @@ fn rings(segments: u32) -> u32 {
     segments.div_ceil(2)
 }
 
+/// The corners of a polygon on a circle, the first on +x.
+pub(crate) fn circle(segments: u32, radius: f64) -> Vec<DVec2> {
+    let corner = |i: u32| {
+        let angle = 360.0 * f64::from(i) / f64::from(segments);
+        radius * DVec2::new(cos_deg(angle), sin_deg(angle))
+    };
+    (0..segments).map(corner).collect()
+}
+
 /// Adds the corners on a circle, the first on +x; one point when the radius is zero.
 fn ring(points: &mut Vec<DVec3>, segments: u32, radius: f64, z: f64) -> Vec<u32> {
     let count = if radius > 0.0 { segments } else { 1 };
-    (0..count)
-        .map(|i| {
-            let angle = 360.0 * f64::from(i) / f64::from(segments);
-            let (x, y) = (radius * cos_deg(angle), radius * sin_deg(angle));
-            points.push(DVec3::new(x, y, z));
+    circle(segments, radius)
+        .into_iter()
+        .take(count as usize)
+        .map(|corner| {
+            points.push(corner.extend(z));
             u32::try_from(points.len() - 1).unwrap_or(u32::MAX)
         })
         .collect()

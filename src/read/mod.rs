@@ -19,6 +19,7 @@ mod obj;
 mod off;
 mod openscad;
 mod options;
+mod outline;
 mod scad;
 mod stl;
 mod turn;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// How to read.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ReadOptions {
     /// What becomes of OpenSCAD's circles, cylinders and spheres.
     pub curves: Curves,
@@ -17,11 +17,14 @@ pub struct ReadOptions {
     /// The most triangles that are made of curves and polygons, of which a line of text can
     /// ask for any number. One takes some 130 bytes.
     pub max_facets: u64,
+    /// How far facets may be from true curves where curves have no exact solid (in twisted
+    /// extrusions, offsets and revolved circles), in model units.
+    pub facet_tolerance: f64,
 }
 
 impl Default for ReadOptions {
-    /// `Curves::Auto`; 1 GiB, which as binary `.stl` is 21 million triangles; and 30 million
-    /// facets.
+    /// `Curves::Auto`; 1 GiB, which as binary `.stl` is 21 million triangles; 30 million
+    /// facets; and facets within 0.005 of what they stand for.
     fn default() -> Self {
         Self {
             curves: Curves::default(),
@@ -29,6 +32,7 @@ impl Default for ReadOptions {
             format: None,
             max_bytes: 1 << 30,
             max_facets: 30_000_000,
+            facet_tolerance: 0.005,
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Circles, cylinders and spheres: true curves or polygons.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::super::error::{Located, ReadErrorKind};
-use super::super::fineness::Fineness;
+pub(super) use super::super::fineness::Fineness;
 use super::super::options::Curves;
+use super::super::outline::{Outline, Shape};
 use super::arguments::Call;
 use super::evaluate::Reading;
 use crate::mesh::{Mesh, round};
@@ -26,6 +28,72 @@ pub(super) enum Round {
     Frustum { radii: [f64; 2], heights: [f64; 2] },
 }
 
+/// The circle as the options ask for it.
+pub(super) fn circle(
+    radius: f64,
+    call: &Call<'_>,
+    reading: &mut Reading<'_>,
+) -> Result<Outline, Located> {
+    let Some(segments) = segments(radius, call, reading)? else {
+        return Ok(Outline::shape(Shape::Circle { radius }));
+    };
+    reading.count_facets(round::frustum_triangles(segments), call.place())?;
+    Ok(Outline::paths(vec![round::circle(segments, radius)]))
+}
+
+/// `$fn`, `$fa` and `$fs`.
+pub(super) fn fineness(call: &Call<'_>) -> Result<Fineness, Located> {
+    Ok(Fineness {
+        count: call.number("$fn")?.unwrap_or(0.0),
+        angle: call.number("$fa")?.unwrap_or(12.0),
+        size: call.number("$fs")?.unwrap_or(2.0),
+    })
+}
+
+/// The segments of a circle that stands for a true one where there is no exact solid: polygons of
+/// the same area are nowhere farther from it than the tolerance, and never coarse.
+pub(super) fn fine(radius: f64, tolerance: f64) -> u32 {
+    /// The fewest and the most segments.
+    const FEWEST: f64 = 48.0;
+    const MOST: f64 = 1440.0;
+    let half = (1.0 - (tolerance / radius).min(1.0)).acos();
+    // Multiples of four have corners on the axes.
+    let quarters = (0.25 * (PI / half).clamp(FEWEST, MOST)).ceil();
+    part(4, quarters)
+}
+
+/// A number of segments times a factor, at least one; fractions are cut off.
+pub(super) fn part(segments: u32, factor: f64) -> u32 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "conversion saturates, and what is too large is refused later"
+    )]
+    let part = (f64::from(segments) * factor) as u32;
+    part.max(1)
+}
+
+/// The segments of a curve that the options make a polygon, and counts it.
+pub(super) fn segments(
+    radius: f64,
+    call: &Call<'_>,
+    reading: &mut Reading<'_>,
+) -> Result<Option<u32>, Located> {
+    let fineness = fineness(call)?;
+    let segments = match reading.options.curves {
+        Curves::Exact => None,
+        Curves::Auto => fineness.polygon(radius),
+        Curves::Faceted => Some(fineness.segments(radius)),
+    };
+    let counts = &mut reading.model.counts;
+    match (segments, reading.options.curves) {
+        (None, _) => counts.curves += 1,
+        (Some(_), Curves::Faceted) => counts.faceted += 1,
+        (Some(_), Curves::Auto | Curves::Exact) => counts.polygons += 1,
+    }
+    Ok(segments)
+}
+
 impl Round {
     /// The curve as the options ask for it.
     pub(super) fn solid(
@@ -33,23 +101,7 @@ impl Round {
         call: &Call<'_>,
         reading: &mut Reading<'_>,
     ) -> Result<Solid, Located> {
-        let fineness = Fineness {
-            count: call.number("$fn")?.unwrap_or(0.0),
-            angle: call.number("$fa")?.unwrap_or(12.0),
-            size: call.number("$fs")?.unwrap_or(2.0),
-        };
-        let segments = match reading.options.curves {
-            Curves::Exact => None,
-            Curves::Auto => fineness.polygon(self.radius()),
-            Curves::Faceted => Some(fineness.segments(self.radius())),
-        };
-        let counts = &mut reading.model.counts;
-        match (segments, reading.options.curves) {
-            (None, _) => counts.curves += 1,
-            (Some(_), Curves::Faceted) => counts.faceted += 1,
-            (Some(_), Curves::Auto | Curves::Exact) => counts.polygons += 1,
-        }
-        let solid = match segments {
+        let solid = match segments(self.radius(), call, reading)? {
             None => self.curve(),
             Some(segments) => Solid::mesh(self.mesh(segments, call, reading)?),
         };

@@ -24,6 +24,7 @@ mod node;
 mod outlines;
 mod parse;
 mod polyhedron;
+mod revolve;
 mod solids;
 #[cfg(test)]
 mod tests;

@@ -1,9 +1,10 @@
 //! Which function makes which node.
 
 use super::super::error::Located;
+use super::super::outline::Outline;
 use super::arguments::Call;
 use super::evaluate::Reading;
-use super::{combine, extrude, import, outlines, polyhedron, solids, transform};
+use super::{combine, extrude, import, outlines, polyhedron, revolve, solids, transform};
 use crate::solid::Solid;
 
 /// What a statement stands for.
@@ -11,8 +12,8 @@ use crate::solid::Solid;
 pub(super) enum Shape {
     /// Nothing, of either dimension.
     Empty,
-    /// A plane shape, as the prism over it from z = 0 to 1.
-    Flat(Solid),
+    /// A plane shape.
+    Flat(Outline),
     /// A solid.
     Solid(Solid),
 }
@@ -62,6 +63,7 @@ pub(super) fn node(name: &str) -> Option<Node> {
         "intersection" => (combine::intersection, &[]),
         "multmatrix" => (transform::multmatrix, &["m"]),
         "color" => (transform::color, &["c", "alpha"]),
+        "rotate_extrude" => (revolve::rotate_extrude, revolve::PARAMETERS),
         "linear_extrude" => (extrude::linear_extrude, extrude::PARAMETERS),
         _ => return None,
     };

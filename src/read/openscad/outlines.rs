@@ -1,16 +1,16 @@
-//! `square`, `circle` and `polygon`, each as the prism over it from z = 0 to 1.
+//! `square`, `circle` and `polygon`.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
-use super::super::error::{Located, ReadErrorKind};
+use super::super::error::Located;
+use super::super::outline::{self, Outline};
 use super::arguments::Call;
-use super::curve::Round;
+use super::curve;
 use super::evaluate::Reading;
 use super::node::Shape;
 use super::polyhedron::{chosen, warn_of_dropped};
 use super::solids::{is_size, radius};
-use crate::mesh::{Mesh, MeshError};
-use crate::solid::Solid;
+use crate::solid::Tag;
 
 pub(super) fn square(
     call: &Call<'_>,
@@ -24,8 +24,7 @@ pub(super) fn square(
     }
     let min = if center { -0.5 * size } else { DVec2::ZERO };
     let max = if center { 0.5 * size } else { size };
-    let prism = Solid::cuboid_between(min.extend(0.0), max.extend(1.0));
-    Ok(Shape::Flat(prism.placed(call.place())))
+    Ok(flat(Outline::shape(outline::Shape::Square { min, max }), call))
 }
 
 pub(super) fn circle(
@@ -37,8 +36,7 @@ pub(super) fn circle(
     if !is_size(radius) {
         return Ok(Shape::Empty);
     }
-    let prism = Round::Frustum { radii: [radius; 2], heights: [0.0, 1.0] };
-    Ok(Shape::Flat(prism.solid(call, reading)?))
+    Ok(flat(curve::circle(radius, call, reading)?, call))
 }
 
 /// The even-odd fill of all paths; without paths, of one path through all points. An
@@ -72,19 +70,23 @@ pub(super) fn polygon(
         }
     };
     warn_of_dropped(call, dropped, reading);
-    match Mesh::prism(&paths, 0.0, 1.0) {
-        Ok(mesh) => {
-            reading.count_facets(mesh.faces().len() as u64, call.place())?;
-            Ok(Shape::Flat(Solid::mesh(mesh).placed(call.place())))
-        }
-        Err(MeshError::NoFaces) => Ok(Shape::Empty),
-        Err(error) => Err(Located::at(call.place(), ReadErrorKind::Mesh(error))),
+    count(&paths, call, reading)?;
+    if paths.iter().all(|path| path.len() < 3) {
+        return Ok(Shape::Empty);
     }
+    Ok(flat(Outline::paths(paths), call))
 }
 
-/// The map of the extrusion of such prisms between two heights.
-pub(super) fn lifted(prism: Solid, [bottom, top]: [f64; 2]) -> Solid {
-    let mut map = glam::DAffine3::from_scale(DVec3::new(1.0, 1.0, top - bottom));
-    map.translation.z = bottom;
-    prism.mapped(map)
+/// Counts the triangles of the prism over a polygon.
+fn count(
+    paths: &[Vec<DVec2>],
+    call: &Call<'_>,
+    reading: &mut Reading<'_>,
+) -> Result<(), Located> {
+    let triangles = paths.iter().map(|path| 4 * path.len().saturating_sub(1) as u64);
+    reading.count_facets(triangles.sum(), call.place())
+}
+
+fn flat(outline: Outline, call: &Call<'_>) -> Shape {
+    Shape::Flat(outline.tagged(Tag::Place(call.place())))
 }

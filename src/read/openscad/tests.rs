@@ -250,3 +250,84 @@ fn polyhedra_are_clockwise_and_put_right() {
         assert_eq!(row(text), "......");
     }
 }
+
+/// By rays, to a hundred-thousandth.
+fn volume_of(solid: &Solid) -> f64 {
+    let scene = crate::Scene::compile(solid).expect("a solid");
+    let sampling = crate::measure::Sampling { rel_tol: 1e-5, ..Default::default() };
+    crate::measure::volume(&scene, &sampling).value
+}
+
+#[test]
+fn outlines_are_turned_about_an_axis() {
+    let ngon = |n: f64| 0.5 * n * (std::f64::consts::TAU / n).sin();
+    let exact = |text: &str| volume_of(&model(text, Curves::Auto).solid);
+    let faceted = |text: &str| volume(text);
+    let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 4e-5, "{a} {b}");
+    let pi = std::f64::consts::PI;
+    // A ring of rectangular section, a part of it, and one that is turned the other way.
+    let ring = "translate2 { square([1, 2]); }"
+        .replace("translate2", "multmatrix([[1,0,0,3],[0,1,0,0],[0,0,1,0],[0,0,0,1]])");
+    near(exact(&format!("rotate_extrude() {{ {ring} }}")), pi * 7.0 * 2.0);
+    for angle in [90.0, -90.0, 200.0] {
+        let text = format!("rotate_extrude(angle = {angle}) {{ {ring} }}");
+        near(exact(&text), pi * 14.0 * f64::abs(angle) / 360.0);
+    }
+    let text = format!("rotate_extrude($fn = 12) {{ {ring} }}");
+    near(faceted(&text), ngon(12.0) * 14.0);
+    let text = format!("rotate_extrude(angle = 90, $fn = 12) {{ {ring} }}");
+    near(faceted(&text), ngon(12.0) * 14.0 / 4.0);
+    // A torus by Pappus, whose section is a polygon of the same area.
+    let disc = ring.replace("square([1, 2])", "circle(r = 1)");
+    near(exact(&format!("rotate_extrude() {{ {disc} }}")), 2.0 * pi * 3.0 * pi);
+    // A cone with its tip on the axis, on either side; and what crosses it.
+    let cone = "rotate_extrude() { polygon([[0, 0], [-2, 0], [0, 3]]); }";
+    near(exact(cone), 4.0 * pi);
+    near(faceted(&cone.replace("()", "($fn = 8)")), 4.0 * ngon(8.0));
+    let found = model("rotate_extrude() { square(2, center = true); }", Curves::Auto);
+    assert_eq!(found.solid.census().leaves, 0);
+    assert!(
+        found.warnings[0].message.contains("crosses its axis"),
+        "{:?}",
+        found.warnings
+    );
+    // Circles with a small $fn are meant to be polygons.
+    near(exact(&format!("rotate_extrude($fn = 6) {{ {ring} }}")), ngon(6.0) * 14.0);
+}
+
+#[test]
+fn extrusions_taper_and_twist() {
+    let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 4e-5, "{a} {b}");
+    let exact = |text: &str| volume_of(&model(text, Curves::Auto).solid);
+    let pi = std::f64::consts::PI;
+    // Frusta of a square, of a circle beside the axis, and of what is cut from it.
+    let shape = "difference() { square(4, center = true); SHIFT circle(r = 1); }"
+        .replace("SHIFT", "multmatrix([[1,0,0,0.5],[0,1,0,0.5],[0,0,1,0],[0,0,0,1]])");
+    for (scale, factor) in [(0.5, 1.75 / 3.0), (0.0, 1.0 / 3.0), (2.0, 7.0 / 3.0)] {
+        let text = format!("linear_extrude(height = 3, scale = {scale}) {{ {shape} }}");
+        near(exact(&text), 3.0 * (16.0 - pi) * factor);
+        let centered = text.replace("scale", "center = true, scale");
+        near(exact(&centered), 3.0 * (16.0 - pi) * factor);
+    }
+    // Where the tip of a cone is, and that it leans.
+    let text = "linear_extrude(height = 4, scale = 0) multmatrix([[1,0,0,5],[0,1,0,0],\
+                [0,0,1,0],[0,0,0,1]]) circle(r = 1);";
+    let cone = model(text, Curves::Auto).solid;
+    assert!(contains(&cone, DVec3::new(1.3, 0.0, 3.0)));
+    assert!(!contains(&cone, DVec3::new(5.0, 0.0, 3.0)));
+    // A wedge, with one edge at the top.
+    near(
+        exact("linear_extrude(height = 3, scale = [1, 0]) square(2, center = true);"),
+        6.0,
+    );
+    // The sides are divided as OpenSCAD divides them: its volume. Half way it is turned half.
+    let text =
+        "linear_extrude(height = 4, twist = 90, slices = 64) square(2, center = true);";
+    near(exact(text), 16.129_27);
+    let twisted = model(text, Curves::Auto).solid;
+    let at = |x: f64, y: f64| contains(&twisted, DVec3::new(x, y, 2.0));
+    assert!(at(1.3, 0.0) && at(0.0, -1.3) && !at(0.95, 0.95));
+    // Clockwise as seen from above.
+    let eighth = |y: f64| contains(&twisted, DVec3::new(1.08, y, 0.7));
+    assert!(eighth(-0.5) && !eighth(0.5));
+}

@@ -1,6 +1,6 @@
 //! `multmatrix` and `color`.
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine2, DAffine3, DMat2, DMat3, DVec3, Vec3Swizzles};
 
 use super::super::error::Located;
 use super::arguments::Call;
@@ -9,6 +9,7 @@ use super::evaluate::Reading;
 use super::node::Shape;
 use crate::color::Color;
 use crate::shape::inverse;
+use crate::solid::Tag;
 
 /// The children under an affine map. Of a plane shape only x and y are mapped. A matrix
 /// that flattens (scale 0) or is not finite makes nothing, with a warning: OpenSCAD
@@ -19,21 +20,22 @@ pub(super) fn multmatrix(
     reading: &mut Reading<'_>,
 ) -> Result<Shape, Located> {
     let map = matrix(call)?;
-    let map = match combine::union(call, children, reading)? {
+    let shape = combine::union(call, children, reading)?;
+    let (is_regular, is_identity) = match shape {
         Shape::Empty => return Ok(Shape::Empty),
-        Shape::Solid(solid) => (map, Shape::Solid(solid)),
-        Shape::Flat(prism) => (plane(map), Shape::Flat(prism)),
+        Shape::Solid(_) => (is_regular(&map), map == DAffine3::IDENTITY),
+        Shape::Flat(_) => (is_regular(&lifted(map)), plane(map) == DAffine2::IDENTITY),
     };
-    if !is_regular(&map.0) {
+    if !is_regular {
         let message = "the matrix is singular or not finite; what it maps is left out";
         reading.warn(call.place(), message);
         return Ok(Shape::Empty);
     }
-    Ok(match map {
-        (map, shape) if map == DAffine3::IDENTITY => shape,
-        (map, Shape::Solid(solid)) => Shape::Solid(solid.mapped(map)),
-        (map, Shape::Flat(prism)) => Shape::Flat(prism.mapped(map)),
-        (_, Shape::Empty) => Shape::Empty,
+    Ok(match shape {
+        shape if is_identity => shape,
+        Shape::Solid(solid) => Shape::Solid(solid.mapped(map)),
+        Shape::Flat(outline) => Shape::Flat(outline.mapped(plane(map))),
+        Shape::Empty => Shape::Empty,
     })
 }
 
@@ -61,7 +63,16 @@ fn matrix(call: &Call<'_>) -> Result<DAffine3, Located> {
 }
 
 /// The part of a map that acts on the plane z = 0 within it.
-fn plane(map: DAffine3) -> DAffine3 {
+fn plane(map: DAffine3) -> DAffine2 {
+    let DAffine3 { matrix3, translation } = map;
+    DAffine2 {
+        matrix2: DMat2::from_cols(matrix3.x_axis.xy(), matrix3.y_axis.xy()),
+        translation: translation.xy(),
+    }
+}
+
+/// That part with z as it is.
+fn lifted(map: DAffine3) -> DAffine3 {
     let DAffine3 { matrix3, translation } = map;
     DAffine3 {
         matrix3: DMat3::from_cols(
@@ -98,7 +109,7 @@ pub(super) fn color(
     let color = Color { rgba: [r, g, b, alpha].map(|part| part as f32) };
     Ok(match shape {
         Shape::Empty => Shape::Empty,
-        Shape::Flat(prism) => Shape::Flat(prism.colored(color)),
+        Shape::Flat(outline) => Shape::Flat(outline.tagged(Tag::Color(color))),
         Shape::Solid(solid) => Shape::Solid(solid.colored(color)),
     })
 }

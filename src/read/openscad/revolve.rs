@@ -1,0 +1,96 @@
+//! `rotate_extrude`.
+
+use glam::{DVec2, DVec3};
+
+use super::super::error::{Located, ReadErrorKind};
+use super::super::outline::{self, Paths};
+use super::arguments::Call;
+use super::curve;
+use super::evaluate::Reading;
+use super::extrude::flat_children;
+use super::node::Shape;
+use crate::mesh::Ends;
+use crate::solid::Solid;
+
+pub(super) const PARAMETERS: &[&str] =
+    &["angle", "start", "convexity", "file", "layer", "origin", "scale", "timestamp"];
+
+/// The solid of the plane children turned about the y-axis, which becomes the z-axis: true
+/// circles, or the sections that OpenSCAD makes. An outline on both sides of the axis makes nothing,
+/// with a warning.
+pub(super) fn rotate_extrude(
+    call: &Call<'_>,
+    children: Vec<Shape>,
+    reading: &mut Reading<'_>,
+) -> Result<Shape, Located> {
+    let angle = call.number("angle")?.unwrap_or(360.0);
+    // OpenSCAD takes all that is no part of a turn for a full one.
+    let is_full = !(-360.0 < angle && angle < 360.0);
+    let start = call.number("start")?.unwrap_or(0.0);
+    if call.value("file").is_some() {
+        return Err(call.unsupported("`rotate_extrude` with `file`"));
+    }
+    let Some(outline) = flat_children(call, children, reading)? else {
+        return Ok(Shape::Empty);
+    };
+    let tolerance = reading.options.facet_tolerance;
+    let paths = outline.polygons(&|radius| curve::fine(radius, tolerance));
+    let Some((paths, is_turned)) = on_the_right(paths) else {
+        reading.warn(call.place(), "`rotate_extrude` crosses its axis and makes nothing");
+        return Ok(Shape::Empty);
+    };
+    let radius = paths.iter().flatten().map(|p| p.x).fold(0.0, f64::max);
+    if radius == 0.0 || angle == 0.0 {
+        return Ok(Shape::Empty);
+    }
+    let solid = match curve::segments(radius, call, reading)? {
+        None if is_full => outline::revolved(&paths),
+        None => {
+            let wedge = outline::in_wedge(outline::revolved(&paths), angle.abs());
+            wedge.rotated(DVec3::Z, angle.min(0.0).to_radians())
+        }
+        Some(segments) => {
+            let corners: usize = paths.iter().map(Vec::len).sum();
+            let triangles = 2 * corners as u64 * u64::from(segments);
+            reading.count_facets(triangles, call.place())?;
+            let mesh = if is_full {
+                outline::turned(&paths, [180.0, 540.0], segments, Ends::Joined)
+            } else {
+                let [from, to] = [angle.min(0.0), angle.max(0.0)];
+                let sections = curve::part(segments, angle.abs() / 360.0);
+                outline::turned(&paths, [from, to], sections, Ends::Open)
+            };
+            Solid::mesh(
+                mesh.map_err(|e| Located::at(call.place(), ReadErrorKind::Mesh(e)))?,
+            )
+        }
+    };
+    let turned = if is_turned { start + 180.0 } else { start };
+    let solid =
+        if turned == 0.0 { solid } else { solid.rotated(DVec3::Z, turned.to_radians()) };
+    Ok(Shape::Solid(solid.placed(call.place()).as_outline()))
+}
+
+/// Polygons at x ≥ 0, and whether they were on the other side before; nothing if they are on both.
+fn on_the_right(mut paths: Paths) -> Option<(Paths, bool)> {
+    let points = || paths.iter().flatten();
+    let [low, high] = [
+        points().map(|p| p.x).fold(0.0, f64::min),
+        points().map(|p| p.x).fold(0.0, f64::max),
+    ];
+    let reach = points().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    // What clipping has moved across the axis is on it.
+    let room = reach * (-36.0_f64).exp2();
+    let is_left = -low > high;
+    if low.abs().min(high) > room {
+        return None;
+    }
+    for path in &mut paths {
+        let on_axis = |p: &DVec2| if is_left { -p.x } else { p.x }.max(0.0);
+        path.iter_mut().for_each(|p| p.x = on_axis(p));
+        if is_left {
+            path.reverse();
+        }
+    }
+    Some((paths, is_left))
+}

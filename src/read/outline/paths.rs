@@ -1,0 +1,154 @@
+//! Outlines as simple polygons.
+
+use std::f64::consts::TAU;
+
+use clipper2_rust::{
+    FillRule, Path64, Paths64, Point64, difference_64, intersect_64, union_subjects_64,
+};
+use glam::DVec2;
+
+use super::{Fold, Outline, Shape, Within};
+use crate::mesh::round;
+use crate::op::Op;
+use crate::solid::Tag;
+
+/// Simple polygons that do not cross each other: outer ones counter-clockwise, holes clockwise.
+pub(in crate::read) type Paths = Vec<Vec<DVec2>>;
+
+/// Coordinates are whole numbers up to 2 to this power, so that their differences and the sums of
+/// products of three are good to twelve digits.
+const BITS: i32 = 40;
+
+impl Outline {
+    /// The polygons of the outline, circles with `segments` of their radius, none if it is empty.
+    pub(in crate::read) fn polygons(&self, segments: &dyn Fn(f64) -> u32) -> Paths {
+        let Ok(reach) = self.fold(&mut Reach);
+        if reach <= 0.0 || !reach.is_finite() {
+            return Vec::new();
+        }
+        let scale =
+            f64::from(BITS - 1 - reach.log2().ceil().clamp(-900.0, 900.0) as i32).exp2();
+        let mut clip = Clip { segments, scale };
+        let Ok(paths) = self.fold(&mut clip);
+        let back = |p: &Point64| DVec2::new(p.x as f64, p.y as f64) / scale;
+        let ring = |path: &Path64| path.iter().map(back).collect();
+        union_subjects_64(&paths, FillRule::NonZero).iter().map(ring).collect()
+    }
+}
+
+/// A polygon with so many corners that has the area of a circle: every other corner would do for
+/// the eye, but then volumes would be too small.
+fn fine_circle(radius: f64, segments: u32) -> Vec<DVec2> {
+    let sector = TAU / f64::from(segments);
+    round::circle(segments, radius * (sector / sector.sin()).sqrt())
+}
+
+/// How far an outline reaches from the origin along an axis, at most.
+struct Reach;
+
+impl Fold<f64, std::convert::Infallible> for Reach {
+    fn shape(
+        &mut self,
+        shape: &Shape,
+        within: &Within,
+    ) -> Result<f64, std::convert::Infallible> {
+        let far = |p: DVec2| within.map.transform_point2(p).abs().max_element();
+        Ok(match shape {
+            Shape::Square { min, max } => {
+                let corners =
+                    [*min, *max, DVec2::new(min.x, max.y), DVec2::new(max.x, min.y)];
+                corners.map(far).into_iter().fold(0.0, f64::max)
+            }
+            // Fine polygons reach a little farther than circles.
+            Shape::Circle { radius } => [-1.5, 1.5]
+                .into_iter()
+                .flat_map(|x| [-1.5, 1.5].map(|y| far(*radius * DVec2::new(x, y))))
+                .fold(0.0, f64::max),
+            Shape::Paths(paths) => {
+                paths.iter().flatten().map(|&p| far(p)).fold(0.0, f64::max)
+            }
+        })
+    }
+
+    fn boolean(
+        &mut self,
+        _: Op,
+        parts: Vec<f64>,
+    ) -> Result<f64, std::convert::Infallible> {
+        Ok(parts.into_iter().fold(0.0, f64::max))
+    }
+
+    fn tagged(&mut self, _: &Tag, part: f64) -> f64 {
+        part
+    }
+}
+
+/// Clipping in whole numbers.
+struct Clip<'a> {
+    segments: &'a dyn Fn(f64) -> u32,
+    scale: f64,
+}
+
+impl Clip<'_> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the scale makes it small enough"
+    )]
+    fn path(&self, points: &[DVec2], within: &Within) -> Path64 {
+        let place = |&p: &DVec2| {
+            let p = (within.map.transform_point2(p) * self.scale).round();
+            Point64::new(p.x as i64, p.y as i64)
+        };
+        points.iter().map(place).collect()
+    }
+}
+
+impl Fold<Paths64, std::convert::Infallible> for Clip<'_> {
+    fn shape(
+        &mut self,
+        shape: &Shape,
+        within: &Within,
+    ) -> Result<Paths64, std::convert::Infallible> {
+        let paths: Paths64 = match shape {
+            Shape::Square { min, max } => {
+                let (right, left) = (DVec2::new(max.x, min.y), DVec2::new(min.x, max.y));
+                vec![self.path(&[*min, right, *max, left], within)]
+            }
+            Shape::Circle { radius } => {
+                let circle = fine_circle(*radius, (self.segments)(*radius));
+                vec![self.path(&circle, within)]
+            }
+            Shape::Paths(paths) => {
+                paths.iter().map(|path| self.path(path, within)).collect()
+            }
+        };
+        Ok(union_subjects_64(&paths, FillRule::EvenOdd))
+    }
+
+    fn boolean(
+        &mut self,
+        op: Op,
+        parts: Vec<Paths64>,
+    ) -> Result<Paths64, std::convert::Infallible> {
+        let mut parts = parts.into_iter();
+        Ok(match op {
+            Op::Union => {
+                let all: Paths64 = parts.flatten().collect();
+                union_subjects_64(&all, FillRule::NonZero)
+            }
+            Op::Intersection => {
+                let first = parts.next().unwrap_or_default();
+                parts.fold(first, |a, b| intersect_64(&a, &b, FillRule::NonZero))
+            }
+            Op::Difference => {
+                let first = parts.next().unwrap_or_default();
+                let rest: Paths64 = parts.flatten().collect();
+                difference_64(&first, &rest, FillRule::NonZero)
+            }
+        })
+    }
+
+    fn tagged(&mut self, _: &Tag, part: Paths64) -> Paths64 {
+        part
+    }
+}
