@@ -128,31 +128,30 @@ fn slices(
 ) -> Result<u32, Located> {
     let curve::Fineness { count, angle, size } = curve::fineness(call)?;
     let (angle, size) = (angle.max(0.01), size.max(0.01));
+    let moved = |p: &DVec2| (*p * (scale - DVec2::ONE)).length_squared();
+    let far = paths.iter().flatten().map(moved).fold(0.0, f64::max);
+    let by_moving =
+        if count > 0.0 { count } else { ((far + height * height).sqrt() / size).ceil() };
     if twist == 0.0 {
-        let moved = |p: &DVec2| (*p * (scale - DVec2::ONE)).length_squared();
-        let far = paths.iter().flatten().map(moved).fold(0.0, f64::max);
-        let slices = if count > 0.0 {
-            count
-        } else {
-            ((far + height * height).sqrt() / size).ceil()
-        };
-        return Ok(curve::part(1, slices.max(1.0)));
+        return Ok(curve::part(1, by_moving));
     }
+    let is_even = scale.x == scale.y;
     let turned = twist.abs();
     let least = (turned / 120.0).ceil().max(1.0);
     let slices = if count > 0.0 {
         (turned * count / 360.0).ceil()
     } else {
         let radians = turned.to_radians();
-        let length = if scale.x == scale.y && scale.x != 1.0 {
+        let length = if is_even && scale.x != 1.0 {
             // A spiral of Archimedes that ends where the radius would be zero.
             let end = radians / (1.0 - scale.x).abs() * scale.x.max(1.0);
             let along = |t: f64| 0.5 * reach / end * (t * t.hypot(1.0) + t.asinh());
-            along(end) - along(end - radians)
+            (along(end) - along(end - radians)).hypot(height)
         } else {
             (reach * radians).hypot(height)
         };
         (turned / angle).ceil().min((length / size).ceil())
     };
-    Ok(curve::part(1, slices.max(least)))
+    let by_moving = if is_even { 0.0 } else { by_moving };
+    Ok(curve::part(1, slices.max(least).max(by_moving)))
 }
