@@ -6,13 +6,13 @@
 #[expect(dead_code, reason = "laws need no dice")]
 mod support;
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use solidray::{Membership, Ray};
+use solidray::{Crossing, Membership, Ray, Scene, Span};
 use support::algebra::{FAR, and, cube, equal_pairs, in_common_frame, minus, or, union};
-use support::model::{Model, crossings_of_leaves};
+use support::model::{Leaf, Model, crossings_of_leaves};
 use support::strategies::{Aim, aims, direction, map, model, place, placed_leaf};
 use support::{covers, ends_in, scene, spans};
 
@@ -138,6 +138,91 @@ proptest! {
                     prop_assert_eq!((a.t, a.leaf, a.face), (factor * b.t, b.leaf, b.face));
                 }
             }
+        }
+    }
+
+    /// Of a line with short coordinates it is the same line wherever on it, at a short number,
+    /// the origin is: so are its crossings, but for the rounding of the two sums that
+    /// say where they are, and spans and gaps that are thinner than their errors. The half-lines
+    /// to both sides begin with the crossings next to the origin.
+    #[test]
+    fn n10_a_line_split_anywhere_has_the_crossings_of_the_whole_line(
+        model in model(),
+        aims in aims(),
+        splits in prop::collection::vec(-40..=40_i32, 4),
+    ) {
+        let scene = scene(&model.solid());
+        let reach = scene.bounds().size().length();
+        for ray in rays(&model, &aims) {
+            let short = |v: DVec3| (64.0 * v).round() / 64.0;
+            let ray = Ray::new(short(ray.origin), short(ray.dir));
+            let whole = crossings(&scene, &ray);
+            for split in splits.iter().map(|i| 0.25 * f64::from(*i)) {
+                let there = Ray::new(ray.at(split), ray.dir);
+                let moved = crossings(&scene, &there);
+                let back = Ray::new(there.origin, -there.dir);
+                let [ahead, behind] = [there, back].map(|ray| scene.tracer().first_hit(&ray));
+                let turned = |c: Crossing| Crossing { t: -c.t, sense: c.sense.reversed(), ..c };
+                prop_assert_eq!(ahead, moved.iter().find(|c| c.t >= 0.0).copied());
+                prop_assert_eq!(behind.map(turned), moved.iter().rfind(|c| c.t <= 0.0).copied());
+                let rounding =
+                    |t: f64| 2.0 * f64::EPSILON * (t.abs() + split.abs() + reach / ray.speed());
+                let without_thin = |list: &[Crossing], ray: &Ray| {
+                    annihilated(list, |a, b| {
+                        let errors = scene.error_at(ray, a) + scene.error_at(ray, b);
+                        b.t - a.t <= errors + rounding(a.t)
+                    })
+                };
+                let [one, two] = [without_thin(&whole, &ray), without_thin(&moved, &there)];
+                prop_assert_eq!(one.len(), two.len(), "{:?} {:?}", one, two);
+                for (a, b) in one.iter().zip(&two) {
+                    prop_assert_eq!((a.leaf, a.face, a.sense), (b.leaf, b.face, b.sense));
+                    prop_assert!((a.t - split - b.t).abs() <= rounding(a.t), "{:?} {:?}", a, b);
+                }
+            }
+        }
+    }
+
+    /// What a plane parts has together the spans of the whole, bit by bit and face by face.
+    #[test]
+    fn n10_the_two_sides_of_a_plane_have_together_the_spans_of_the_whole(
+        model in model(),
+        aims in aims(),
+        normal in [0.2..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64],
+        part in -0.1..1.1_f64,
+    ) {
+        prop_assume!(fits(&model));
+        let whole = in_common_frame(&model);
+        for ray in rays(&model, &aims) {
+            // Without the corners of the frame.
+            let is_near = |span: &Span| ray.at(span.enter.t).abs().max_element() < FAR - 1.0;
+            let within = |scene: &Scene| -> Vec<Span> {
+                spans(scene, &ray).into_iter().filter(is_near).collect()
+            };
+            let list = within(&whole);
+            let (Some(first), Some(last)) = (list.first(), list.last()) else { continue };
+            let at = first.enter.t + part * (last.exit.t - first.enter.t);
+            // Through an end, the plane would be the end.
+            let mut ends = list.iter().flat_map(|span| [span.enter.t, span.exit.t]);
+            if ends.any(|t| (t - at).abs() <= 1e-9 * (1.0 + t.abs())) {
+                continue;
+            }
+            let normal = DVec3::from_array(normal);
+            let half = Model::Leaf(Leaf::HalfSpace { normal, offset: normal.dot(ray.at(at)) });
+            let mut parts = [and(&model, &half), minus(&model, &half)];
+            if normal.dot(ray.dir) < 0.0 {
+                parts.reverse();
+            }
+            let [near, far] = parts.map(|part| within(&in_common_frame(&part)));
+            let mut both = near;
+            for span in far {
+                match both.last_mut() {
+                    #[expect(clippy::float_cmp, reason = "one place is one number")]
+                    Some(last) if last.exit.t == span.enter.t => last.exit = span.exit,
+                    _ => both.push(span),
+                }
+            }
+            prop_assert_eq!(both, list, "{:?} at {}", ray, at);
         }
     }
 
@@ -270,6 +355,28 @@ proptest! {
             prop_assert_eq!(ends_in(&a, &ray), ends_in(&b, &ray));
         }
     }
+}
+
+/// The ends of the spans of one ray, in order.
+fn crossings(scene: &Scene, ray: &Ray) -> Vec<Crossing> {
+    spans(scene, ray).iter().flat_map(|span| [span.enter, span.exit]).collect()
+}
+
+/// A list without neighbours that are too near each other.
+fn annihilated(
+    list: &[Crossing],
+    near: impl Fn(&Crossing, &Crossing) -> bool,
+) -> Vec<Crossing> {
+    let mut left: Vec<Crossing> = Vec::new();
+    for crossing in list {
+        match left.last() {
+            Some(last) if near(last, crossing) => {
+                left.pop();
+            }
+            _ => left.push(*crossing),
+        }
+    }
+    left
 }
 
 /// How many more spans of two lists start than end at each place where that is not zero.
