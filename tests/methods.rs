@@ -10,9 +10,11 @@ use std::time::Duration;
 
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use proptest::prelude::*;
-use proptest::test_runner::Config;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{Config, TestRunner};
 use solidray::measure::{self, Estimate, Method, Sampling};
 use solidray::{Op, Scene, Solid, unwatched};
+use support::model::{Leaf, Model};
 use support::strategies::{self, bounded_leaf, map};
 use support::{meshes, scene};
 
@@ -152,7 +154,7 @@ proptest! {
     /// Formulas against certain bounds, under maps that turn, stretch and shear.
     #[test]
     fn formulas_are_within_brackets(leaf in bounded_leaf(), map in map()) {
-        let model = support::model::Model::Leaf(leaf).mapped(map);
+        let model = Model::Leaf(leaf).mapped(map);
         let solid = model.solid();
         if let Some(found) = measure::exact(&solid) {
             let bounds = bracket(&solid, 1 << 14);
@@ -164,7 +166,7 @@ proptest! {
 
     /// Brackets of random trees hold what lattices find.
     #[test]
-    fn brackets_hold_the_volumes_of_random_trees(model in strategies::model()) {
+    fn n40_brackets_hold_the_volumes_of_random_trees(model in strategies::model()) {
         let solid = model.solid();
         let Ok(scene) = Scene::compile(&solid) else { return Ok(()) };
         let bounds = measure::bracket(&scene, &sampling(0.0, 1 << 14), &unwatched);
@@ -179,18 +181,70 @@ proptest! {
     }
 }
 
+/// As they are, and under maps.
 #[test]
-fn brackets_hold_textbook_volumes() {
+fn n40_brackets_hold_textbook_volumes() {
+    let mut runner = TestRunner::deterministic();
     for (name, solid, truth) in textbook() {
-        for cells in [1 << 10, 1 << 14, 1 << 17] {
-            let found = bracket(&solid, cells);
-            let room = 4.0 * f64::EPSILON * truth;
-            let [low, high] = found.interval;
-            assert!(
-                low <= truth + room && truth - room <= high,
-                "{name}: {found:?} {truth}"
-            );
-            assert!(found.rays <= cells && found.method == Method::Bracket);
+        let maps = (0..3)
+            .map(|_| map().new_tree(&mut runner).expect("nothing is rejected").current());
+        for map in std::iter::once(DAffine3::IDENTITY).chain(maps) {
+            let solid = solid.clone().mapped(map);
+            let truth = truth * map.matrix3.determinant().abs();
+            for cells in [1 << 6, 1 << 10, 1 << 14, 1 << 16] {
+                let found = bracket(&solid, cells);
+                // The truth is rounded, and so are the maps' products.
+                let room = 64.0 * f64::EPSILON * truth;
+                let [low, high] = found.interval;
+                assert!(
+                    low <= truth + room && truth - room <= high,
+                    "{name}: {found:?} {truth} {map:?}"
+                );
+                assert!(found.rays <= cells && found.method == Method::Bracket);
+            }
+        }
+    }
+}
+
+/// Trees of balls and boxes, of which slices know the volume to nine digits.
+#[test]
+fn n40_brackets_hold_the_volumes_of_trees_of_balls_and_boxes() {
+    let mut runner = TestRunner::deterministic();
+    let leaf = prop_oneof![
+        strategies::length().prop_map(|radius| Leaf::Ball { radius }),
+        [(); 3].map(|()| strategies::length()).prop_map(|size| Leaf::Cuboid {
+            min: DVec3::ZERO,
+            max: DVec3::from_array(size),
+        }),
+    ];
+    let placed = (leaf, strategies::place())
+        .prop_map(|(leaf, at)| Model::Leaf(leaf).mapped(DAffine3::from_translation(at)));
+    let trees = placed.prop_recursive(3, 6, 3, |inner| {
+        (strategies::op(), prop::collection::vec(inner, 2..=3))
+            .prop_map(|(op, children)| Model::boolean(op, children))
+    });
+    let cases = (trees, map());
+    let mut known = 0;
+    while known < 60 {
+        let (tree, map) =
+            cases.new_tree(&mut runner).expect("nothing is rejected").current();
+        let solid = tree.solid();
+        let truth = measure::adaptive(&scene(&solid), &sampling(1e-9, 1 << 22))
+            .expect("there are few surfaces");
+        let is_known = truth.method == Method::Adaptive && truth.target_met;
+        if !is_known || !truth.resolved {
+            continue;
+        }
+        known += 1;
+        for (solid, factor) in
+            [(solid.clone(), 1.0), (solid.mapped(map), map.matrix3.determinant().abs())]
+        {
+            for cells in [1 << 8, 1 << 12, 1 << 15] {
+                let found = bracket(&solid, cells);
+                let [low, high] = found.interval;
+                let [least, most] = truth.interval.map(|end| factor * end);
+                assert!(low <= most && least <= high, "{found:?} {truth:?} {tree:?}");
+            }
         }
     }
 }
