@@ -222,3 +222,78 @@ fn nothing_has_no_body_and_needs_no_rays() {
     assert!(!found.resolved && !found.target_met());
     assert!(found.volume.interval[0] == 0.0 && found.volume.interval[1] > 1e-11);
 }
+
+/// With at most this many rays, however wide the interval is.
+fn with_rays(solid: &Solid, max_rays: u64, seed: u64) -> Properties {
+    let scene = Scene::compile(solid).unwrap();
+    let sampling = Sampling { rel_tol: 0.0, max_rays, seed, ..Sampling::default() };
+    properties(&scene, &sampling, &unwatched)
+}
+
+/// In the mean of squares: sixteen lattices share the rays. One lattice of them all would be nearer,
+/// and would not know how near.
+#[test]
+fn n42_a_turned_box_has_its_area_within_2e_4_of_260_000_rays() {
+    let turn = DMat3::from_euler(EulerRot::XYZ, 0.4, -1.1, 0.7);
+    let (solid, truth) = moved(brick(dvec3(1.0, 2.0, 0.7)), turn, DVec3::ZERO);
+    let errors: Vec<f64> = (0..16)
+        .map(|seed| {
+            let found = with_rays(&solid, 260_000, seed);
+            assert!(found.rays <= 260_000 && found.rays > 130_000, "{found:?}");
+            found.area.value / truth.area - 1.0
+        })
+        .collect();
+    let n = errors.len() as f64;
+    let spread = (errors.iter().map(|error| error * error).sum::<f64>() / n).sqrt();
+    let mean = errors.iter().sum::<f64>() / n;
+    assert!(spread < 2e-4 && mean.abs() < 1e-4, "{spread:e} {mean:e}");
+}
+
+/// Rays along one axis alone never meet four of the six faces. Those of three beams do, and the
+/// mean of many seeds is the area: within four of its standard errors, which are small.
+#[test]
+fn n42_a_box_along_the_axes_has_its_area_without_bias() {
+    for size in [DVec3::ONE, dvec3(1.0, 2.0, 0.7), dvec3(5.0, 4.0, 0.02)] {
+        let (solid, truth) = brick(size);
+        let errors: Vec<f64> = (0..100)
+            .map(|seed| with_rays(&solid, 12_000, seed).area.value / truth.area - 1.0)
+            .collect();
+        let n = errors.len() as f64;
+        let mean = errors.iter().sum::<f64>() / n;
+        let squares: f64 = errors.iter().map(|e| (e - mean) * (e - mean)).sum();
+        let error = (squares / (n - 1.0) / n).sqrt();
+        assert!(error < 1e-3, "{size}: {error:e}");
+        assert!(mean.abs() < 4.0 * error + 1e-12, "{size}: {mean:e} ± {error:e}");
+    }
+}
+
+/// A million sizes away bodies are as they were: moments are not found as small differences of
+/// large ones.
+#[test]
+fn n43_a_body_1e6_away_has_its_centroid_within_1e_9_and_its_inertia() {
+    let by = 1e6 * dvec3(1.0, -1.0, 0.5);
+    for (here, truth) in solids() {
+        let there = here.clone().translated(by);
+        for seed in 0..2 {
+            let [near, far] = [&here, &there].map(|solid| measured(solid, 1e-3, seed));
+            let [near, far] = [near, far].map(|found| found.body.unwrap());
+            for k in 0..3 {
+                let (at, found) = (truth.centroid[k] + by[k], far.centroid[k]);
+                assert!((found.value - at).abs() < 1e-9 * by.length(), "{found:?} {at}");
+                for j in 0..3 {
+                    let [a, b] = [&near, &far].map(|body| body.inertia[k][j]);
+                    let apart = (a.value - b.value).abs();
+                    assert!(
+                        apart <= a.half_width().min(b.half_width()) + 1e-9 * a.target
+                    );
+                }
+            }
+            // Positive, and as those of a body: none is more than the two others together.
+            let moments = far.principal.each_ref().map(|p| p.moment.value);
+            let sum: f64 = moments.iter().sum();
+            for moment in moments {
+                assert!(moment > 0.0 && 2.0 * moment < sum * (1.0 + 1e-9), "{moments:?}");
+            }
+        }
+    }
+}
