@@ -56,12 +56,20 @@ impl Faces {
     /// The mesh, put right where what is meant is plain: points listed several times are
     /// welded if the mesh is open without, and bodies that are inside out are turned.
     ///
-    /// Only points with equal coordinates are welded; a tolerance could close what was
-    /// meant to be apart.
-    pub(super) fn build(mut self) -> Result<Built, Located> {
+    /// Points with equal coordinates are welded; a tolerance could close what was meant to be
+    /// apart. OpenSCAD has one in polyhedra, its `grid`; it is used where nothing else helps.
+    pub(super) fn build(self) -> Result<Built, Located> {
+        self.build_on_grid(None)
+    }
+
+    /// The same with points that are one on a grid of so wide cells, if the mesh is open without.
+    pub(super) fn build_on_grid(mut self, grid: Option<f64>) -> Result<Built, Located> {
         let mut checked = self.triangles();
-        if matches!(checked, Err(MeshError::OpenEdges { .. })) && self.weld() {
-            checked = self.triangles();
+        let rounded = |p: DVec3| grid.map_or(p, |grid| (p / grid).round());
+        for round in [&|p| p as DVec3, &rounded as &dyn Fn(DVec3) -> DVec3] {
+            if matches!(checked, Err(MeshError::OpenEdges { .. })) && self.weld(round) {
+                checked = self.triangles();
+            }
         }
         let mut triangles =
             checked.map_err(|error| Located::nowhere(ReadErrorKind::Mesh(error)))?;
@@ -77,19 +85,23 @@ impl Faces {
         Ok(triangles)
     }
 
-    /// Keeps one of equal points each, and drops faces that this leaves without area.
-    /// Whether any points were equal.
-    fn weld(&mut self) -> bool {
+    /// Keeps the first of the points each that are equal when they are rounded, and drops faces
+    /// that this leaves without area. Whether there were any.
+    fn weld(&mut self, round: &dyn Fn(DVec3) -> DVec3) -> bool {
         let mut distinct = Points::default();
+        let mut kept = Vec::new();
         let mut same = Vec::with_capacity(self.points.len());
         for &point in &self.points {
-            let Ok(index) = distinct.add(point) else { return false };
+            let Ok(index) = distinct.add(round(point)) else { return false };
+            if index as usize == kept.len() {
+                kept.push(point);
+            }
             same.push(index);
         }
-        if distinct.points.len() == self.points.len() {
+        if kept.len() == self.points.len() {
             return false;
         }
-        let mut welded = Self { points: distinct.finish(), ..Self::default() };
+        let mut welded = Self { points: kept, ..Self::default() };
         for face in self.iter() {
             let mut face: Vec<u32> = face.iter().map(|&i| same[i as usize]).collect();
             face.dedup();

@@ -32,6 +32,8 @@ pub(super) struct Reading<'a> {
     pub(super) imports: HashMap<PathBuf, Arc<Mesh>>,
     /// How much may still be imported.
     pub(super) budget: Budget,
+    /// Why the first of those polyhedra was left out that bound no solid.
+    left_out: Option<Located>,
 }
 
 impl Reading<'_> {
@@ -43,6 +45,12 @@ impl Reading<'_> {
             return Err(Located::at(at, ReadErrorKind::TooManyFacets { count, limit }));
         }
         Ok(())
+    }
+
+    /// Leaves out a polyhedron that bounds no solid, with a warning.
+    pub(super) fn leave_out(&mut self, error: Located, at: Place) {
+        self.warn(at, format!("{}; it is left out, as by OpenSCAD", error.kind));
+        self.left_out.get_or_insert(error);
     }
 
     pub(super) fn warn(&mut self, place: Place, message: impl Into<String>) {
@@ -74,6 +82,7 @@ pub(super) fn model(
         facets: 0,
         imports: HashMap::new(),
         budget,
+        left_out: None,
     };
     let (next, end) = content(document);
     let shapes = shapes(document, next, end, &mut reading)?;
@@ -81,7 +90,11 @@ pub(super) fn model(
     reading.model.solid = match combine::all(shapes, "the file", start, &mut reading) {
         Shape::Solid(solid) => solid,
         Shape::Flat(_) => return Err(Located::nowhere(ReadErrorKind::TwoDimensional)),
-        Shape::Empty => Solid::empty(),
+        // Nothing of what was meant is left.
+        Shape::Empty => match reading.left_out {
+            Some(error) => return Err(error),
+            None => Solid::empty(),
+        },
     };
     Ok(reading.model)
 }

@@ -9,7 +9,11 @@ use super::evaluate::Reading;
 use super::node::Shape;
 use crate::solid::Solid;
 
-/// Points, and faces clockwise seen from outside; faces that bound no solid are an error.
+/// Points that are nearer to each other are one to OpenSCAD.
+const GRID: f64 = 1.0 / (1_u32 << 20) as f64;
+
+/// Points, and faces clockwise seen from outside. Faces that bound no solid are left out with a
+/// warning; they are an error if nothing else is left.
 pub(super) fn polyhedron(
     call: &Call<'_>,
     _: Vec<Shape>,
@@ -41,7 +45,13 @@ pub(super) fn polyhedron(
         return Ok(Shape::Empty);
     }
     let place = call.place();
-    let built = read.build().map_err(|e| Located::at(place, e.kind))?;
+    let built = match read.build_on_grid(Some(GRID)) {
+        Ok(built) => built,
+        Err(error) => {
+            reading.leave_out(Located::at(place, error.kind), place);
+            return Ok(Shape::Empty);
+        }
+    };
     if built.turned {
         reading.model.counts.turned += 1;
         reading.warn(place, TURNED);

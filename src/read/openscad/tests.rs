@@ -331,3 +331,21 @@ fn extrusions_taper_and_twist() {
     let eighth = |y: f64| contains(&twisted, DVec3::new(1.08, y, 0.7));
     assert!(eighth(-0.5) && !eighth(0.5));
 }
+
+#[test]
+fn open_polyhedra_are_left_out() {
+    let open = "polyhedron(points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], \
+                faces = [[0, 1, 2], [0, 3, 1], [1, 3, 2]]);";
+    let found = model(&format!("cube(2);\n{open}"), Curves::Auto);
+    assert_eq!(found.solid.census().leaves, 1);
+    let message = found.warnings[0].to_string();
+    assert!(message.starts_with("2:1: the mesh is not closed"), "{message}");
+    assert!(message.ends_with("it is left out, as by OpenSCAD"), "{message}");
+    // Points apart by less than OpenSCAD can tell are one, where that closes the mesh.
+    let nearly = "polyhedron(points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], \
+                  [-2e-16, 0, 0]], faces = [[0, 1, 2], [4, 3, 1], [1, 3, 2], [0, 2, 3]]);";
+    assert!((volume(nearly) - 1.0 / 6.0).abs() < 1e-12);
+    // What cuts with it cuts with nothing; what it is cut from is nothing.
+    let cut = model(&format!("difference() {{ cube(2); {open} }}"), Curves::Auto);
+    assert_eq!(cut.solid.census().leaves, 1);
+}
