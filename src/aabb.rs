@@ -109,6 +109,12 @@ impl Aabb {
         if self.is_empty() { DVec3::ZERO } else { self.max - self.min }
     }
 
+    /// Half the area of the surface; zero for an empty box.
+    pub(crate) fn half_area(&self) -> f64 {
+        let DVec3 { x, y, z } = self.size();
+        x * y + y * z + z * x
+    }
+
     /// The middle of a bounded box.
     pub fn center(&self) -> DVec3 {
         0.5 * self.min + 0.5 * self.max

@@ -216,9 +216,12 @@ fn nothing_has_no_body_and_needs_no_rays() {
     let found = measured(&apart, 1e-3, 0);
     assert!(found.volume.value == 0.0 && found.volume.half_width() == 0.0);
     assert_eq!((found.rays, found.body), (0, None));
-    // A needle in a haystack is not resolved.
+    // Two needles in a haystack are found, a hair through all of it is not.
     let far = Solid::ball(1e-4).translated(dvec3(30.0, 20.0, 10.0));
     let found = measured(&(Solid::ball(1e-4) + far), 1e-3, 0);
+    assert!(found.target_met() && found.volume.interval[0] > 8e-12);
+    let hair = Solid::cylinder(1e-7, 10.0).rotated(dvec3(1.0, -1.0, 0.0), 0.9);
+    let found = measured(&hair, 1e-3, 0);
     assert!(!found.resolved && !found.target_met());
     assert!(found.volume.interval[0] == 0.0 && found.volume.interval[1] > 1e-11);
 }

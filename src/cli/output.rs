@@ -51,7 +51,10 @@ impl From<&Estimate> for EstimateJson {
 /// An estimate in words: digits that were earned, then the half width of the interval.
 pub(super) fn in_words(estimate: &Estimate) -> String {
     if !estimate.resolved {
-        return format!("not resolved: at most {:.3e} (95 %)", estimate.interval[1]);
+        let [low, high] = estimate.interval;
+        let least =
+            if low > 0.0 { format!("at least {low:.3e}, ") } else { String::new() };
+        return format!("not resolved: {least}at most {high:.3e} (95 %)");
     }
     let half_width = estimate.half_width();
     let kind = match estimate.method {

@@ -82,6 +82,8 @@ impl Beam {
 
 /// Rays near each other, and which lattices they are of.
 pub(super) struct Samples<'a> {
+    /// The number of the stratum.
+    pub(super) stratum: usize,
     pub(super) beam: &'a Beam,
     pub(super) bunch: Bunch<'a>,
     pub(super) replicates: &'a [u8],

@@ -124,6 +124,7 @@ impl Column {
                     up: &self.up[range.clone()],
                 };
                 Samples {
+                    stratum: 0,
                     beam,
                     bunch: Bunch { fan: &beam.fan, corners, places },
                     replicates: &self.replicates[range],

@@ -6,6 +6,7 @@ use super::beam::{Beam, Samples};
 use super::estimate::Estimate;
 use super::lattice::{Round, Sampling, Tally, Wanted, rounds};
 use super::spread::student;
+use super::strata::Stratum;
 use super::volume::{Sum, distance, estimate, is_nothing, wanted};
 use crate::progress::Watch;
 use crate::scene::{BunchTracer, Chords, CompileError, CompileOptions, Scene};
@@ -120,15 +121,17 @@ pub fn compare_with(
     let comparison = |round: &Round<Tallies>, rays| {
         summary(&beam, round, rays, nothing, tolerance, sampling)
     };
-    let (round, rays) = rounds(
-        std::slice::from_ref(&beam),
+    let whole = Stratum::whole(bounds, vec![Beam::new(bounds)]);
+    let (rounds, rays) = rounds(
+        std::slice::from_ref(&whole),
         sampling,
         watch,
         || (scenes.each_ref().map(Scene::bunch_tracer), Vec::new()),
         |(tracers, only_one), samples, tallies| {
             sample(tracers, only_one, samples, tallies);
         },
-        |round, rays| {
+        |rounds, rays| {
+            let round = &rounds[0];
             let (now, lattices) = (comparison(round, rays), round.replicates.len());
             let wanted = |e: &Estimate| {
                 let is_known = e.value == 0.0;
@@ -141,10 +144,10 @@ pub fn compare_with(
             let undecided = now.verdict == Verdict::Undecided;
             let undecided =
                 if undecided { Wanted::Larger(MORE) } else { Wanted::Nothing };
-            undecided.and(wanted(&now.a)).and(wanted(&now.b))
+            undecided.and(wanted(&now.a)).and(wanted(&now.b)).into()
         },
     );
-    Ok(comparison(&round, rays))
+    Ok(comparison(&rounds[0], rays))
 }
 
 /// How many times as many rays are tried where a verdict is not clear.

@@ -13,8 +13,9 @@ pub struct Estimate {
     pub method: Method,
     /// Whether the interval is as narrow as was asked for.
     pub target_met: bool,
-    /// Whether enough rays met the solid for `value` to mean anything. If not, `interval`
-    /// begins at zero and its end is a one-sided bound.
+    /// Whether enough rays met the solid for `value` to mean anything. If not, the end of
+    /// `interval` is a one-sided bound, and it begins at zero or with what is known of some
+    /// of the solid.
     pub resolved: bool,
     /// How many stretches of rays inside the solid the value was found from.
     pub spans: u64,

@@ -21,15 +21,16 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
-use super::beam::{Beam, Samples};
+use super::beam::Samples;
 use super::column::{Column, usize_of};
 use super::spread::REPLICATES;
+use super::strata::Stratum;
 use crate::lanes::whole;
 use crate::progress::Watch;
 use crate::sampling::{Fibonacci, hash, unit};
 
 /// The size of the first lattices.
-const FIRST: u64 = 233;
+pub(super) const FIRST: u64 = 233;
 
 /// How far to go, and where to start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,11 +77,13 @@ pub(super) trait Tally: Default + Send {
     fn add(&mut self, later: Self);
 }
 
-/// What each lattice of one round found.
+/// What each lattice of one round found in one stratum.
 pub(super) struct Round<T> {
     pub(super) replicates: Vec<T>,
     /// How many rays each lattice has; none if not even the first round was finished.
     pub(super) size: u64,
+    /// How many rays each beam has had in all rounds.
+    pub(super) spent: u64,
 }
 
 /// What is wanted after a round.
@@ -108,65 +111,152 @@ impl Wanted {
     }
 }
 
+/// What is wanted of all strata after a round.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Next {
+    /// No more.
+    Nothing,
+    /// As many lattices of the same sizes, in all.
+    Lattices(usize),
+    /// Lattices so many times as large in place of some strata's; what there is of the others
+    /// stays.
+    Larger(Vec<Option<f64>>),
+}
+
+impl From<Wanted> for Next {
+    /// Of the one stratum that there is.
+    fn from(wanted: Wanted) -> Self {
+        match wanted {
+            Wanted::Nothing => Self::Nothing,
+            Wanted::Lattices(count) => Self::Lattices(count),
+            Wanted::Larger(factor) => Self::Larger(vec![Some(factor)]),
+        }
+    }
+}
+
 /// Rounds of ever larger lattices, or of more of them, until they are enough or a limit is
-/// reached. Returns the last round that was finished and the number of rays of all that were.
+/// reached. Returns the last round of each stratum that was finished and the number of rays of
+/// all that were.
 ///
 /// `scratch` makes what a thread needs, `sample` adds rays to the tallies of their lattices.
-/// A lattice is one of each beam, all of them of the same size.
+/// A lattice is one of each beam of a stratum, all of them of the same size. All strata have as
+/// many beams, and as many lattices.
 pub(super) fn rounds<S, T: Tally>(
-    beams: &[Beam],
+    strata: &[Stratum],
     sampling: &Sampling,
     watch: Watch<'_>,
     scratch: impl Fn() -> S + Sync + Send,
     sample: impl Fn(&mut S, &Samples<'_>, &mut [T]) + Sync + Send,
-    mut wanted: impl FnMut(&Round<T>, u64) -> Wanted,
-) -> (Round<T>, u64) {
+    mut wanted: impl FnMut(&[Round<T>], u64) -> Next,
+) -> (Vec<Round<T>>, u64) {
     let start = Instant::now();
     let deadline = sampling.time_limit.and_then(|limit| start.checked_add(limit));
-    let mut round = Round { replicates: Vec::new(), size: 0 };
-    round.replicates.resize_with(REPLICATES, T::default);
-    let mut next = Part::first(Fibonacci::at_least(FIRST));
+    let beams = strata.first().map_or(1, |stratum| stratum.beams.len() as u64);
+    let mut rounds: Vec<Round<T>> = Vec::new();
+    rounds.resize_with(strata.len(), || {
+        let mut replicates = Vec::new();
+        replicates.resize_with(REPLICATES, T::default);
+        Round { replicates, size: 0, spent: 0 }
+    });
+    let mut parts = vec![Part::first(Fibonacci::at_least(FIRST)); strata.len()];
     let mut rays = 0;
     loop {
         let before = start.elapsed();
-        let seed = sampling.seed;
-        let found = part(beams, seed, &next, deadline, watch, &scratch, &sample);
-        let Some(found) = found else { return (round, rays) };
-        let taken = next.rays() * beams.len() as u64;
-        rays += taken;
-        if next.is_first() {
-            round = Round { replicates: found, size: next.lattice.len() };
-        } else {
+        let mut found = Vec::new();
+        let mut first_beam = 0;
+        for (number, (stratum, part)) in strata.iter().zip(&parts).enumerate() {
+            let task = Task { number, stratum, part, seed: sampling.seed, first_beam };
+            let limits = Limits { deadline, watch };
+            let Some(tallies) = sampled(&task, &limits, &scratch, &sample) else {
+                return (rounds, rays);
+            };
+            found.push(tallies);
+            first_beam += stratum.beams.len();
+        }
+        let mut taken = 0;
+        for ((round, part), found) in rounds.iter_mut().zip(&parts).zip(found) {
+            taken += part.rays() * beams;
+            round.spent += part.rays();
+            if part.is_first() {
+                round.replicates.clear();
+                round.size = part.lattice.len();
+            }
             round.replicates.extend(found);
         }
+        rays += taken;
         let took = (start.elapsed() - before).as_secs_f64();
         let left = sampling.time_limit.map_or(f64::INFINITY, |limit| {
             limit.saturating_sub(start.elapsed()).as_secs_f64()
         });
         let most = (left / took * taken as f64)
             .min(sampling.max_rays.saturating_sub(rays) as f64)
-            / beams.len() as f64;
-        let following = match wanted(&round, rays) {
-            Wanted::Nothing => None,
-            Wanted::Lattices(count) => next.more(count, most),
-            Wanted::Larger(factor) => next.larger(factor, most),
+            / beams as f64;
+        let following = match wanted(&rounds, rays) {
+            Next::Nothing => None,
+            Next::Lattices(count) => more(&parts, count, most),
+            Next::Larger(factors) => larger(&parts, &factors, most),
         };
-        let Some(part) = following else { return (round, rays) };
-        next = part;
+        let Some(following) = following else { return (rounds, rays) };
+        for (round, part) in rounds.iter_mut().zip(&following) {
+            // Of those that stay others need not have as many.
+            if following.iter().any(Part::is_first) && !part.is_first() {
+                round.replicates.truncate(REPLICATES);
+            }
+        }
+        parts = following;
     }
 }
 
-/// Some of the lattices of a round.
+/// More lattices of each stratum, so that there are `count` of them, with at most `most` rays of
+/// each of their beams.
+fn more(parts: &[Part], count: usize, most: f64) -> Option<Vec<Part>> {
+    let each: u64 = parts.iter().map(|part| part.lattice.len()).sum();
+    let more = |part: &Part| part.more(count, each, most);
+    parts.iter().map(more).collect()
+}
+
+/// Larger lattices of some strata, if possible by these factors, with at most `most` rays of each
+/// of their beams.
+fn larger(parts: &[Part], factors: &[Option<f64>], most: f64) -> Option<Vec<Part>> {
+    /// If it is not possible then by so much less, and again.
+    const LESS: f64 = 0.8;
+    if let ([part], [factor]) = (parts, factors) {
+        return Some(vec![part.larger((*factor)?, most)?]);
+    }
+    let largest = factors.iter().flatten().copied().fold(0.0, f64::max);
+    let mut scale = 1.0;
+    while scale * largest > 1.0 {
+        let next = parts.iter().zip(factors).map(|(part, factor)| match factor {
+            Some(factor) => part.replaced(scale * factor),
+            None => part.kept(),
+        });
+        let next: Vec<Part> = next.collect();
+        let grows = next
+            .iter()
+            .zip(parts)
+            .any(|(new, old)| new.lattice.len() > old.lattice.len());
+        let rays: u64 = next.iter().map(Part::rays).sum();
+        if grows && rays as f64 <= most {
+            return Some(next);
+        }
+        scale *= LESS;
+    }
+    None
+}
+
+/// Some of the lattices of a round of one stratum.
 #[derive(Clone, Debug)]
 struct Part {
     lattice: Fibonacci,
+    /// How often there were others of the same size before.
+    again: u64,
     numbers: Range<usize>,
 }
 
 impl Part {
     /// The lattices that a round begins with.
     fn first(lattice: Fibonacci) -> Self {
-        Self { lattice, numbers: 0..REPLICATES }
+        Self { lattice, again: 0, numbers: 0..REPLICATES }
     }
 
     fn is_first(&self) -> bool {
@@ -177,12 +267,13 @@ impl Part {
         self.lattice.len() * self.numbers.len() as u64
     }
 
-    /// More lattices after these, so that there are `count` of them, with at most `most` rays.
-    fn more(&self, count: usize, most: f64) -> Option<Self> {
+    /// More lattices after these, so that there are `count` of them, with at most `most` rays,
+    /// where it takes `each` for one of all strata.
+    fn more(&self, count: usize, each: u64, most: f64) -> Option<Self> {
         let from = self.numbers.end;
-        let room = usize_of(whole(most / self.lattice.len() as f64));
+        let room = usize_of(whole(most / each as f64));
         let to = count.min(from.saturating_add(room));
-        (to > from).then_some(Self { lattice: self.lattice, numbers: from..to })
+        (to > from).then_some(Self { numbers: from..to, ..*self })
     }
 
     /// Lattices that are larger, if possible by a factor, with at most `most` rays.
@@ -190,26 +281,63 @@ impl Part {
         let most = most / (self.lattice.len() * REPLICATES as u64) as f64;
         self.lattice.grown(factor, most).map(Self::first)
     }
+
+    /// Other lattices, larger by a factor if that is more than one.
+    fn replaced(&self, factor: f64) -> Self {
+        let larger =
+            if factor > 1.0 { self.lattice.grown(factor, f64::INFINITY) } else { None };
+        larger.map_or_else(
+            || Self { again: self.again + 1, ..Self::first(self.lattice) },
+            Self::first,
+        )
+    }
+
+    /// No more of these, of which there will be as many as a round begins with.
+    fn kept(&self) -> Self {
+        Self { numbers: REPLICATES..REPLICATES, ..*self }
+    }
+}
+
+/// What is to be sampled: a part of a round of the stratum with this number.
+struct Task<'a> {
+    number: usize,
+    stratum: &'a Stratum,
+    part: &'a Part,
+    seed: u64,
+    /// How many beams the strata before it have.
+    first_beam: usize,
+}
+
+impl Task<'_> {
+    /// How a lattice of a beam is shifted.
+    fn shift(&self, beam: usize, number: usize) -> DVec2 {
+        let Part { lattice, again, .. } = self.part;
+        let part = |axis| {
+            let axis = (2 * (self.first_beam + beam) + axis) as u64;
+            let indices = [lattice.len(), number as u64, axis, *again];
+            // Numbers depend on the last index only where there is something to tell apart.
+            let count = if *again == 0 { 3 } else { 4 };
+            unit(hash(self.seed, &indices[..count]))
+        };
+        DVec2::new(part(0), part(1))
+    }
+}
+
+/// What ends sampling.
+struct Limits<'a> {
+    deadline: Option<Instant>,
+    watch: Watch<'a>,
 }
 
 /// Samples a part of a round, unless the deadline comes first.
-fn part<S, T: Tally>(
-    beams: &[Beam],
-    seed: u64,
-    part: &Part,
-    deadline: Option<Instant>,
-    watch: Watch<'_>,
+fn sampled<S, T: Tally>(
+    task: &Task<'_>,
+    limits: &Limits<'_>,
     scratch: &(impl Fn() -> S + Sync + Send),
     sample: &(impl Fn(&mut S, &Samples<'_>, &mut [T]) + Sync + Send),
 ) -> Option<Vec<T>> {
-    let Part { lattice, numbers } = part;
-    let shift = |beam: usize, number: usize| {
-        let part = |axis| {
-            let axis = (2 * beam + axis) as u64;
-            unit(hash(seed, &[lattice.len(), number as u64, axis]))
-        };
-        DVec2::new(part(0), part(1))
-    };
+    let &Limits { deadline, watch } = limits;
+    let Part { lattice, numbers, .. } = task.part;
     let tallies = || -> Vec<T> { numbers.clone().map(|_| T::default()).collect() };
     let late = AtomicBool::new(false);
     let is_late = || {
@@ -220,9 +348,13 @@ fn part<S, T: Tally>(
     };
     let scratch = || (scratch(), Column::new());
     let mut replicates = tallies();
-    for (i, beam) in beams.iter().enumerate() {
-        let shifts: Vec<DVec2> = numbers.clone().map(|number| shift(i, number)).collect();
-        let grid @ [columns, _] = beam.grid(part.rays());
+    if numbers.is_empty() {
+        return Some(replicates);
+    }
+    for (i, beam) in task.stratum.beams.iter().enumerate() {
+        let shifts: Vec<DVec2> =
+            numbers.clone().map(|number| task.shift(i, number)).collect();
+        let grid @ [columns, _] = beam.grid(task.part.rays());
         let partial = |(scratch, column): &mut (S, Column), number: u64| {
             let mut tallies = tallies();
             if is_late() {
@@ -233,7 +365,8 @@ fn part<S, T: Tally>(
                 if is_late() {
                     break;
                 }
-                sample(scratch, &bunch, &mut tallies);
+                let samples = Samples { stratum: task.number, ..bunch };
+                sample(scratch, &samples, &mut tallies);
             }
             if watch(column.len() as u64).is_break() {
                 late.store(true, Ordering::Relaxed);

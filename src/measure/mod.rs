@@ -14,7 +14,10 @@ mod overlap;
 mod points;
 mod properties;
 mod rounded;
+mod several;
+mod shares;
 mod spread;
+mod strata;
 mod volume;
 
 pub use adaptive::{Unsuited, adaptive, adaptive_with};
@@ -26,7 +29,7 @@ pub use lattice::Sampling;
 pub use overlap::{Deepest, Overlap, overlaps};
 pub use points::points;
 pub use properties::{
-    Body, Mass, MergeError, Principal, Properties, Quantity, Replicate, Run, mass, merge,
-    properties, run,
+    Body, Mass, MergeError, Missed, Principal, Properties, Quantity, Replicate, Run,
+    mass, merge, properties, run,
 };
 pub use volume::{volume, volume_with};

@@ -3,8 +3,11 @@
 use super::beam::Beam;
 use super::column::usize_of;
 use super::estimate::{Estimate, Method};
-use super::lattice::{Round, Sampling, Tally, Wanted, rounds};
+use super::lattice::{Next, Round, Sampling, Tally, Wanted, rounds};
+use super::several::Parts;
+use super::shares::next;
 use super::spread::{ENOUGH_HITS, most_hits, student};
+use super::strata::Stratum;
 use crate::lanes::whole;
 use crate::progress::{Watch, unwatched};
 use crate::scene::{Chords, Scene};
@@ -40,6 +43,11 @@ impl Tally for Sum {
 /// an upper bound instead of a spread that would be too small, or zero. Where no ray does, a
 /// sixteenth of `max_rays` is enough to say so.
 ///
+/// Operands of unions that are far apart, or much smaller than others, are measured in boxes of
+/// their own, up to 64 of them, by as many rays each as it takes: a screw in a hall is found. Where
+/// one of these boxes is not resolved, the end of the interval is larger by what may be in it.
+/// If that is little of what is allowed, the answer is resolved all the same.
+///
 /// ```
 /// use solidray::{Scene, Solid, measure};
 ///
@@ -57,9 +65,55 @@ pub fn volume_with(scene: &Scene, sampling: &Sampling, watch: Watch<'_>) -> Esti
     if is_nothing(scene) {
         return Estimate::exact(0.0);
     }
-    let beam = Beam::new(scene.bounds());
-    let (round, rays) = rounds(
-        std::slice::from_ref(&beam),
+    let strata = Stratum::divide(scene, sampling, |bounds| vec![Beam::new(bounds)]);
+    if let [one] = &strata[..] {
+        return of_one(scene, one, sampling, watch);
+    }
+    let (rounds, rays) = rounds(
+        &strata,
+        sampling,
+        watch,
+        || (scene.bunch_tracer(), Vec::new()),
+        |(tracer, kept), samples, sums: &mut [Sum]| {
+            let stratum = &strata[samples.stratum];
+            tracer.spans(&samples.bunch, |i, ray, tracer| {
+                let mut chords = Chords::default();
+                stratum.clip(ray, tracer.spans_found(), kept, |stretch| {
+                    chords.length += stretch.to - stretch.from;
+                    chords.spans += 1;
+                });
+                if chords.spans > 0 {
+                    chords.uncertain = tracer.uncertain(ray);
+                }
+                sums[usize::from(samples.replicates[i])].add(chords.into());
+            });
+        },
+        |rounds, rays| {
+            let found = Parts::new(&strata, rounds);
+            let now = found.estimate(rays, sampling);
+            if now.target_met {
+                return Next::Nothing;
+            }
+            next(found.ratio(sampling), &found.shares(rounds, sampling), rounds)
+        },
+    );
+    if rounds.iter().any(|round| round.size == 0) {
+        let bounds = scene.bounds();
+        return nothing_known(bounds.size().element_product(), rays);
+    }
+    Parts::new(&strata, &rounds).estimate(rays, sampling)
+}
+
+/// The volume of all in one stratum.
+fn of_one(
+    scene: &Scene,
+    stratum: &Stratum,
+    sampling: &Sampling,
+    watch: Watch<'_>,
+) -> Estimate {
+    let beam = &stratum.beams[0];
+    let (rounds, rays) = rounds(
+        std::slice::from_ref(stratum),
         sampling,
         watch,
         || scene.bunch_tracer(),
@@ -68,18 +122,31 @@ pub fn volume_with(scene: &Scene, sampling: &Sampling, watch: Watch<'_>) -> Esti
                 sums[usize::from(samples.replicates[i])].add(chords.into());
             });
         },
-        |round, rays| {
+        |rounds, rays| {
+            let round = &rounds[0];
             let hopeless = rays >= sampling.max_rays / PATIENCE
                 && round.replicates.iter().all(|sum| sum.hits == 0);
-            let now = estimate(&beam, round, rays, sampling, |sum| *sum);
+            let now = estimate(beam, round, rays, sampling, |sum| *sum);
             if hopeless {
-                Wanted::Nothing
+                Next::Nothing
             } else {
-                wanted(distance(&now, sampling), round.replicates.len())
+                wanted(distance(&now, sampling), round.replicates.len()).into()
             }
         },
     );
-    estimate(&beam, &round, rays, sampling, |sum| *sum)
+    estimate(beam, &rounds[0], rays, sampling, |sum| *sum)
+}
+
+/// Where not even the first round was finished.
+fn nothing_known(whole_box: f64, rays: u64) -> Estimate {
+    Estimate {
+        interval: [0.0, whole_box],
+        rays,
+        method: Method::Lattice,
+        target_met: false,
+        resolved: false,
+        ..Estimate::exact(0.0)
+    }
 }
 
 /// How many times as wide as it should be the interval is; no number where there is no telling.
@@ -135,15 +202,7 @@ pub(super) fn estimate<T>(
 ) -> Estimate {
     let whole_box = beam.depth() * beam.area();
     if round.size == 0 {
-        let interval = [0.0, whole_box];
-        return Estimate {
-            interval,
-            rays,
-            method: Method::Lattice,
-            target_met: false,
-            resolved: false,
-            ..Estimate::exact(0.0)
-        };
+        return nothing_known(whole_box, rays);
     }
     let sums: Vec<Sum> = round.replicates.iter().map(sum).collect();
     let per_ray = beam.area() / round.size as f64;

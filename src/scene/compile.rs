@@ -492,15 +492,7 @@ impl Compiler {
     fn finish(mut self, weld: f64) -> Result<Scene, CompileError> {
         let welds = self.join(weld)?;
         let reach = self.program.bounds(&self.literals, &self.boxes, &[]);
-        let cutters: Vec<(u32, Aabb)> = self
-            .literals
-            .iter()
-            .zip(self.shapes.iter().zip(&self.boxes))
-            .filter(|(literal, (shape, _))| {
-                literal.complement && shape.fills_its_bounds()
-            })
-            .map(|(literal, (_, leaf))| (literal.parent, *leaf))
-            .collect();
+        let cutters = cutters(&self.literals, &self.shapes, &self.boxes);
         let bounds = self.program.bounds(&self.literals, &self.boxes, &cutters);
         let clipped: Vec<Aabb> =
             self.boxes.iter().map(|b| b.intersection(reach)).collect();
@@ -530,4 +522,18 @@ impl Compiler {
             welds,
         })
     }
+}
+
+/// The leaves that are boxes to be taken away, and from which node.
+pub(super) fn cutters(
+    literals: &[Literal],
+    shapes: &[Shape],
+    boxes: &[Aabb],
+) -> Vec<(u32, Aabb)> {
+    literals
+        .iter()
+        .zip(shapes.iter().zip(boxes))
+        .filter(|(literal, (shape, _))| literal.complement && shape.fills_its_bounds())
+        .map(|(literal, (_, leaf))| (literal.parent, *leaf))
+        .collect()
 }

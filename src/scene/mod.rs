@@ -145,6 +145,18 @@ impl Scene {
         self.stage.bounds
     }
 
+    /// Boxes that hold the solid together: those of the operands of its unions, as far as
+    /// they can be told apart.
+    pub(crate) fn pieces(&self) -> Vec<Aabb> {
+        let cutters = compile::cutters(&self.literals, &self.shapes, &self.clipped);
+        self.program.pieces(&self.literals, &self.clipped, &cutters)
+    }
+
+    /// At most how far the surfaces of any leaf lie beside those that were said.
+    pub(crate) fn worst_slack(&self) -> f64 {
+        self.worst_slack
+    }
+
     /// Whether a point is inside. Points of the boundary may go either way.
     ///
     /// Makes a tracer for the occasion; for more points use [`Tracer::contains`], for

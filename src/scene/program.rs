@@ -20,6 +20,13 @@ pub(crate) struct Literal {
     pub(crate) complement: bool,
 }
 
+impl Literal {
+    /// A box around where it is true, from that of its leaf.
+    fn bounds(&self, leaf: Aabb) -> Aabb {
+        if self.complement { Aabb::ALL } else { leaf }
+    }
+}
+
 /// An expression in which complements have been pushed to the leaves.
 ///
 /// A node is true when at least `need` of its children are: all of them, or one. Parents
@@ -115,6 +122,16 @@ impl Program {
         leaves: &[Aabb],
         cutters: &[(u32, Aabb)],
     ) -> Aabb {
+        self.boxes(literals, leaves, cutters)[0]
+    }
+
+    /// Such boxes for all nodes.
+    fn boxes(
+        &self,
+        literals: &[Literal],
+        leaves: &[Aabb],
+        cutters: &[(u32, Aabb)],
+    ) -> Vec<Aabb> {
         let mut boxes: Vec<Aabb> = self
             .nodes
             .iter()
@@ -124,8 +141,7 @@ impl Program {
             })
             .collect();
         for (literal, &leaf) in literals.iter().zip(leaves) {
-            let around = if literal.complement { Aabb::ALL } else { leaf };
-            self.merge(&mut boxes, literal.parent, around);
+            self.merge(&mut boxes, literal.parent, literal.bounds(leaf));
         }
         let mut cutters_of = vec![Vec::new(); self.nodes.len()];
         for &(node, cutter) in cutters {
@@ -140,7 +156,72 @@ impl Program {
                 self.merge(&mut boxes, self.nodes[i].parent, around);
             }
         }
-        boxes[0]
+        boxes
+    }
+
+    /// Boxes that hold together where the root is true, from the boxes of the leaves: those of
+    /// the operands of the union at the top, and of unions of which something is cut, for
+    /// what is left of a union is within what is left of its operands. None is empty.
+    pub(crate) fn pieces(
+        &self,
+        literals: &[Literal],
+        leaves: &[Aabb],
+        cutters: &[(u32, Aabb)],
+    ) -> Vec<Aabb> {
+        /// A union is not looked into whose operands all but fill what is left of it: they
+        /// tell nothing apart.
+        const MOST: f64 = 2.0;
+        let boxes = self.boxes(literals, leaves, cutters);
+        // How much of each union's cut operands there is.
+        let mut sums = vec![0.0; self.nodes.len()];
+        let mut count = |node: u32, child: Aabb| {
+            let Node { parent, combine, .. } = self.nodes[node as usize];
+            if node > 0 && combine == Combine::Any {
+                sums[node as usize] +=
+                    child.intersection(boxes[parent as usize]).half_area();
+            }
+        };
+        for (literal, &leaf) in literals.iter().zip(leaves) {
+            count(literal.parent, literal.bounds(leaf));
+        }
+        for (node, &around) in self.nodes.iter().zip(&boxes).skip(1) {
+            count(node.parent, around);
+        }
+        // Of the unions that an intersection is of, the one that is looked into.
+        let mut chosen: Vec<Option<u32>> = vec![None; self.nodes.len()];
+        for (i, node) in (0..).zip(&self.nodes).skip(1) {
+            let (parent, sum) = (node.parent as usize, sums[i as usize]);
+            let is_better = chosen[parent].is_none_or(|other| sum < sums[other as usize]);
+            let is_small = sum <= MOST * boxes[parent].half_area();
+            if node.combine == Combine::Any && is_better && is_small {
+                chosen[parent] = Some(i);
+            }
+        }
+        let mut pieces = Vec::new();
+        let mut found = |piece: Aabb| {
+            if !piece.is_empty() {
+                pieces.push(piece);
+            }
+        };
+        // What the solid is within, for unions that are looked into.
+        let mut within: Vec<Option<Aabb>> = vec![None; self.nodes.len()];
+        within[0] = Some(boxes[0]);
+        for (i, node) in (0..).zip(&self.nodes).skip(1) {
+            let here = match (node.combine, within[node.parent as usize]) {
+                (Combine::All, Some(outer)) => outer.intersection(boxes[i]),
+                _ => continue,
+            };
+            match chosen[i] {
+                Some(union) => within[union as usize] = Some(here),
+                None => found(here),
+            }
+        }
+        for (literal, &leaf) in literals.iter().zip(leaves) {
+            if let Some(outer) = within[literal.parent as usize] {
+                found(outer.intersection(literal.bounds(leaf)));
+            }
+        }
+        pieces
     }
 
     fn merge(&self, boxes: &mut [Aabb], node: u32, child: Aabb) {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use solidray::measure::{
-    self, Body, Mass, Properties, Quantity, Replicate, Run, Sampling,
+    self, Body, Mass, Missed, Properties, Quantity, Replicate, Run, Sampling,
 };
 use solidray::{Aabb, Part};
 
@@ -87,7 +87,16 @@ pub(super) struct RunJson {
     lattice: u64,
     rays: u64,
     reached: Option<BoundsJson>,
+    /// Volume and area that there may be more; none in reports from before it was known.
+    #[serde(default)]
+    missed: MissedJson,
     replicates: Vec<ReplicateJson>,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+struct MissedJson {
+    volume: f64,
+    area: f64,
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -203,12 +212,14 @@ impl From<&Run> for RunJson {
             let Replicate { integrals, hits, spans, uncertain } = *found;
             ReplicateJson { integrals, hits, spans, uncertain }
         };
+        let Missed { volume, area } = run.missed;
         Self {
             seed: run.seed,
             bounds: bounds_json(&run.bounds),
             lattice: run.lattice,
             rays: run.rays,
             reached: bounds_json(&run.reached),
+            missed: MissedJson { volume, area },
             replicates: run.replicates.iter().map(replicate).collect(),
         }
     }
@@ -223,6 +234,7 @@ impl From<&RunJson> for Run {
             let ReplicateJson { integrals, hits, spans, uncertain } = *found;
             Replicate { integrals, hits, spans, uncertain }
         };
+        let MissedJson { volume, area } = run.missed;
         Self {
             seed: run.seed,
             bounds: bounds(run.bounds),
@@ -230,6 +242,7 @@ impl From<&RunJson> for Run {
             rays: run.rays,
             replicates: run.replicates.iter().map(replicate).collect(),
             reached: bounds(run.reached),
+            missed: Missed { volume, area },
         }
     }
 }

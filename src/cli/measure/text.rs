@@ -109,8 +109,14 @@ fn in_words_if(resolved: bool, quantity: &QuantityJson) -> String {
     match quantity.interval[1] {
         _ if resolved => in_words(quantity),
         Some(0.0) => "0".to_owned(),
-        Some(high) => format!("not resolved: at most {high:.3e}"),
-        None => "not resolved".to_owned(),
+        high => {
+            let low = quantity.interval[0].filter(|low| *low > 0.0);
+            let least = low.map(|low| format!("at least {low:.3e}"));
+            let most = high.map(|high| format!("at most {high:.3e}"));
+            let bounds: Vec<String> = least.into_iter().chain(most).collect();
+            let colon = if bounds.is_empty() { "" } else { ": " };
+            format!("not resolved{colon}{}", bounds.join(", "))
+        }
     }
 }
 

@@ -4,6 +4,7 @@ mod integrals;
 mod principal;
 mod quantity;
 mod run;
+mod several;
 mod summed;
 
 use glam::DVec3;
@@ -15,16 +16,16 @@ use crate::aabb::Aabb;
 use crate::progress::Watch;
 use crate::scene::Scene;
 pub use quantity::Quantity;
-pub use run::{Replicate, Run, run};
+pub use run::{Missed, Replicate, Run, run};
 use summed::Summed;
 
 /// What rays find out about a solid. Lengths are model units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Properties {
-    /// The volume. Where it is not resolved the interval begins at zero and its end is a
-    /// one-sided bound.
+    /// The volume. Where it is not resolved the end of its interval is a one-sided bound, and it
+    /// begins at zero or with what is known of some of it.
     pub volume: Quantity,
-    /// The area of the surface; cavities have one, too. Infinite bounds where the volume is not
+    /// The area of the surface; cavities have one, too. No bound above where the volume is not
     /// resolved.
     pub area: Quantity,
     /// The centre of the volume, and the inertia; nothing where the volume is not resolved or
@@ -75,28 +76,35 @@ pub struct Principal {
 impl Properties {
     /// Whether all intervals are as narrow as was asked for.
     pub fn target_met(&self) -> bool {
-        self.resolved && self.quantities().all(|quantity| quantity.target_met())
+        self.resolved && self.quantities().iter().all(Quantity::target_met)
     }
 
     /// All numbers with a target.
-    fn quantities(&self) -> impl Iterator<Item = Quantity> {
-        let body = self.body.iter().flat_map(|body| {
-            let principal = body.principal.map(|p| p.moment);
-            let inertia = body.inertia.iter().flatten().copied();
-            body.centroid.into_iter().chain(inertia).chain(principal)
-        });
-        [self.volume, self.area].into_iter().chain(body)
+    fn quantities(&self) -> Vec<Quantity> {
+        quantities(self.volume, self.area, self.body.as_ref())
     }
 
     /// How many times as wide as it was to be the widest interval is; no number where there is
     /// no telling.
     fn distance(&self) -> f64 {
-        if !self.resolved {
-            return f64::NAN;
-        }
-        let ratios = self.quantities().filter(|q| q.half_width() > 0.0);
-        ratios.map(|q| q.half_width() / q.target).fold(0.0, f64::max)
+        if self.resolved { widest(self.quantities()) } else { f64::NAN }
     }
+}
+
+fn quantities(volume: Quantity, area: Quantity, body: Option<&Body>) -> Vec<Quantity> {
+    let mut all = vec![volume, area];
+    if let Some(Body { centroid, inertia, principal }) = body {
+        all.extend(centroid);
+        all.extend(inertia.iter().flatten());
+        all.extend(principal.iter().map(|p| p.moment));
+    }
+    all
+}
+
+/// How many times as wide as it was to be the widest interval is.
+fn widest(quantities: Vec<Quantity>) -> f64 {
+    let uncertain = quantities.into_iter().filter(|q| q.half_width() > 0.0);
+    uncertain.map(|q| q.half_width() / q.target).fold(0.0, f64::max)
 }
 
 /// Why runs cannot be combined.
@@ -118,6 +126,9 @@ pub enum MergeError {
 
 /// Volume, surface, centroid and inertia, by lattices of rays along three axes, until all of them
 /// are as exact as `sampling` asks.
+///
+/// What is far apart, or much smaller than the rest, is measured in boxes of its own, as by
+/// [`volume`](super::volume()).
 ///
 /// ```
 /// use glam::dvec3;
@@ -166,7 +177,7 @@ fn summary(runs: &[Run], sampling: &Sampling) -> Properties {
     let bounds = runs[0].bounds;
     let replicates = || runs.iter().flat_map(|run| &run.replicates);
     let count = |of: fn(&Replicate) -> u64| replicates().map(of).sum();
-    let summed = Summed::of(runs);
+    let summed = Summed::of(runs, sampling);
     Properties {
         volume: summed.volume(sampling),
         area: summed.area(sampling),
@@ -184,8 +195,8 @@ fn summary(runs: &[Run], sampling: &Sampling) -> Properties {
 /// The mass of some parts together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mass {
-    /// Volumes times densities. Where some part is not resolved the interval begins at zero and
-    /// its end is a one-sided bound.
+    /// Volumes times densities. Where some part is not resolved the end of the interval is a
+    /// one-sided bound, and it begins at zero or with what is known.
     pub mass: Quantity,
     /// The centre of mass, and the inertia; nothing where some part is not resolved, or all are
     /// nothing.
@@ -201,7 +212,7 @@ pub struct Mass {
 pub fn mass(parts: &[(f64, &[Run])], sampling: &Sampling) -> Result<Mass, MergeError> {
     let mut all: Option<Summed> = None;
     for &(density, runs) in parts {
-        let part = Summed::of(&in_order(runs)?).times(density);
+        let part = Summed::of(&in_order(runs)?, sampling).times(density);
         all = Some(match all {
             None => part,
             Some(all) => all.and(part),

@@ -28,6 +28,12 @@ impl Quantity {
         self
     }
 
+    /// The same where there may be so much more.
+    pub(super) fn and_more(mut self, most: f64) -> Self {
+        self.interval[1] += most;
+        self
+    }
+
     /// A number known without rays.
     pub(super) fn exact(value: f64) -> Self {
         Self { value, interval: [value; 2], target: 0.0 }

@@ -10,10 +10,11 @@
 use glam::DVec3;
 
 use super::integrals::{COUNT, Integrals};
-use super::summary;
+use super::{several, summary};
 use crate::aabb::Aabb;
 use crate::measure::beam::{Beam, Samples};
-use crate::measure::lattice::{Round, Sampling, Tally, Wanted, rounds};
+use crate::measure::lattice::{Next, Round, Sampling, Tally, rounds};
+use crate::measure::strata::{Clipped, Stratum};
 use crate::measure::volume::{PATIENCE, is_nothing, wanted};
 use crate::progress::Watch;
 use crate::ray::Ray;
@@ -27,7 +28,7 @@ pub struct Run {
     pub seed: u64,
     /// The box that the rays covered. Coordinates count from its middle.
     pub bounds: Aabb,
-    /// How many rays each beam of a lattice has; none if there is nothing to measure or no
+    /// How many rays a lattice has along each axis; none if there is nothing to measure or no
     /// round was finished in time.
     pub lattice: u64,
     /// How many rays were spent, those of earlier rounds included.
@@ -36,6 +37,29 @@ pub struct Run {
     pub replicates: Vec<Replicate>,
     /// A box around all ends of chords.
     pub reached: Aabb,
+    /// What there may be where few rays met the solid or none, in boxes that were measured by
+    /// themselves.
+    pub missed: Missed,
+}
+
+/// Bounds for what there is in boxes that too few rays met: all of it, for what was found there is
+/// not in the integrals, nor does it count as hits. Zero where everything was measured together.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Missed {
+    /// Of the volume.
+    pub volume: f64,
+    /// Of the area, if rays cross twice what they have not met.
+    pub area: f64,
+}
+
+impl Missed {
+    pub(super) const NOTHING: Self = Self { volume: 0.0, area: 0.0 };
+
+    /// So many times as much more.
+    pub(super) fn add(&mut self, times: f64, other: Self) {
+        self.volume += times * other.volume;
+        self.area += times * other.area;
+    }
 }
 
 /// What one lattice of rays found.
@@ -63,7 +87,11 @@ impl Run {
         let is_unfinished = self.replicates.is_empty() && self.lattice == 0;
         let all_finite =
             || self.replicates.iter().flat_map(|r| r.integrals).all(f64::is_finite);
-        is_unfinished || (self.lattice > 0 && self.replicates.len() >= 16 && all_finite())
+        let is_bound = |bound: f64| bound.is_finite() && bound >= 0.0;
+        let is_finished =
+            || self.lattice > 0 && self.replicates.len() >= 16 && all_finite();
+        [self.missed.volume, self.missed.area].into_iter().all(is_bound)
+            && (is_unfinished || is_finished())
     }
 }
 
@@ -78,40 +106,50 @@ pub fn run(scene: &Scene, sampling: &Sampling, watch: Watch<'_>) -> Run {
         rays: 0,
         replicates: Vec::new(),
         reached: Aabb::EMPTY,
+        missed: Missed::NOTHING,
     };
     if is_nothing(scene) {
         return run;
     }
-    let beams = [0, 1, 2].map(|axis| Beam::along(bounds, axis));
-    let look = Look { scene, beams: &beams, center: bounds.center() };
-    let (round, rays) = rounds(
-        &beams,
+    let beams = |bounds| [0, 1, 2].map(|axis| Beam::along(bounds, axis)).into();
+    let strata = Stratum::divide(scene, sampling, beams);
+    let look = Look { scene, strata: &strata, center: bounds.center() };
+    let (rounds, rays) = rounds(
+        &strata,
         sampling,
         watch,
-        || scene.bunch_tracer(),
-        |tracer, samples, tallies: &mut [Found]| {
+        || (scene.bunch_tracer(), Vec::new()),
+        |(tracer, kept), samples, tallies: &mut [Found]| {
             tracer.spans(&samples.bunch, |i, ray, tracer| {
                 let tally = &mut tallies[usize::from(samples.replicates[i])];
-                look.add(samples, ray, tracer, tally);
+                look.add(samples, ray, tracer, kept, tally);
             });
         },
-        |round, rays| {
-            let now = Run { rays, ..round_of(&run, round) };
-            let hopeless = rays >= sampling.max_rays / PATIENCE
-                && now.replicates.iter().all(|r| r.hits == 0);
-            if hopeless {
-                Wanted::Nothing
-            } else {
-                let now = summary(std::slice::from_ref(&now), sampling);
-                wanted(now.distance(), round.replicates.len())
-            }
+        |rounds, rays| match rounds {
+            [round] => next_of_one(&Run { rays, ..round_of(&run, round) }, sampling),
+            _ => several::next(&run, &strata, rounds, sampling),
         },
     );
-    Run { rays, ..round_of(&run, &round) }
+    let found = match &rounds[..] {
+        [round] => round_of(&run, round),
+        _ => several::sum_of(&run, &strata, &rounds),
+    };
+    Run { rays, ..found }
 }
 
-/// What a round has found.
-fn round_of(run: &Run, round: &Round<Found>) -> Run {
+/// What to do after a round of the one stratum that there is.
+fn next_of_one(now: &Run, sampling: &Sampling) -> Next {
+    let hopeless = now.rays >= sampling.max_rays / PATIENCE
+        && now.replicates.iter().all(|r| r.hits == 0);
+    if hopeless {
+        return Next::Nothing;
+    }
+    let found = summary(std::slice::from_ref(now), sampling);
+    wanted(found.distance(), now.replicates.len()).into()
+}
+
+/// What a round has found in one stratum.
+pub(super) fn round_of(run: &Run, round: &Round<Found>) -> Run {
     let replicate = |found: &Found| {
         let per_ray = 1.0 / round.size as f64;
         let Found { integrals, hits, spans, uncertain, .. } = *found;
@@ -128,49 +166,57 @@ fn round_of(run: &Run, round: &Round<Found>) -> Run {
     }
 }
 
+/// The area that a crossing stands for of a surface with this normal, for one ray of each beam.
+pub(super) fn crossed(beams: &[Beam], normal: DVec3) -> f64 {
+    let seen = |beam: &Beam| (normal.dot(beam.dir()) / beam.area()).abs();
+    1.0 / beams.iter().map(seen).fold(0.0, |sum, seen| sum + seen)
+}
+
 /// How rays are looked at.
 struct Look<'a> {
     scene: &'a Scene,
-    beams: &'a [Beam; 3],
+    strata: &'a [Stratum],
     center: DVec3,
 }
 
 impl Look<'_> {
-    /// Adds what a ray has found. A beam stands for a third of the volume, and for its part of each
-    /// piece of the surface.
+    /// Adds what a ray has found in its stratum. A beam stands for a third of the volume, and for
+    /// its part of each piece of the surface.
     fn add(
         &self,
         samples: &Samples<'_>,
         ray: &Ray,
         tracer: &Tracer<'_>,
+        kept: &mut Vec<[f64; 2]>,
         found: &mut Found,
     ) {
-        let spans = tracer.spans_found();
-        let mut along = Integrals::default();
-        for span in spans {
-            let begin = ray.at(span.enter.t);
-            along.add_chord(begin - self.center, ray.dir, span.length());
+        let stratum = &self.strata[samples.stratum];
+        let (mut along, mut spans) = (Integrals::default(), 0);
+        stratum.clip(ray, tracer.spans_found(), kept, |Clipped { from, to, ends }| {
+            let begin = ray.at(from);
+            along.add_chord(begin - self.center, ray.dir, to - from);
             found.reached.add(begin);
-            found.reached.add(ray.at(span.exit.t));
-            for crossing in [&span.enter, &span.exit] {
+            found.reached.add(ray.at(to));
+            for crossing in ends.iter().flatten() {
                 let normal = self.scene.normal_at(ray, crossing);
-                let seen = |beam: &Beam| (normal.dot(beam.dir()) / beam.area()).abs();
-                let [x, y, z] = self.beams.each_ref().map(seen);
-                along.add_area(1.0 / (x + y + z));
+                along.add_area(crossed(&stratum.beams, normal));
             }
-        }
+            spans += 1;
+        });
         found.integrals.add(&along.scaled(samples.beam.area() / 3.0, 1.0));
-        found.hits += u64::from(!spans.is_empty());
-        found.spans += spans.len() as u64;
-        found.uncertain += tracer.uncertain(ray);
+        found.hits += u64::from(spans > 0);
+        found.spans += spans;
+        if spans > 0 || self.strata.len() == 1 {
+            found.uncertain += tracer.uncertain(ray);
+        }
     }
 }
 
 /// What the rays of one lattice have found.
 #[derive(Clone, Copy, Debug, Default)]
-struct Found {
+pub(super) struct Found {
     integrals: Integrals,
-    hits: u64,
+    pub(super) hits: u64,
     spans: u64,
     uncertain: u64,
     reached: Reached,
