@@ -63,6 +63,14 @@ impl Stratum {
         let rounding = 64.0 * f64::EPSILON * scene.bounds().reach();
         let room = 4.0 * scene.worst_slack() + rounding;
         let boxes: Vec<Aabb> = boxes.iter().map(|b| with_room(b, room)).collect();
+        Self::in_order(&boxes, beams)
+    }
+
+    /// What is in each of some boxes and in none before it.
+    pub(super) fn in_order(
+        boxes: &[Aabb],
+        beams: impl Fn(Aabb) -> Vec<Beam>,
+    ) -> Vec<Self> {
         let one = |(i, &bounds): (usize, &Aabb)| {
             let meets = |other: &&Aabb| !other.intersection(bounds).is_empty();
             let others = boxes[..i].iter().filter(meets).copied().collect();
@@ -153,8 +161,8 @@ const MOST_PIECES: usize = 1024;
 /// A division must be worth so many times what it costs.
 const GAIN: f64 = 4.0;
 
-/// Hulls of some boxes in which rays are not wasted, smaller ones first, at most `most`: one if it
-/// does not pay to divide.
+/// Hulls of some boxes in which rays are not wasted, smaller ones first, at most `most`: one or none
+/// if it does not pay to divide.
 fn divided(pieces: Vec<Aabb>, most: u64) -> Vec<Aabb> {
     let is_worth = !pieces.is_empty() && pieces.len() <= MOST_PIECES && most > 1;
     let cost = |of: &[Aabb]| Group { pieces: of.to_vec() }.cost();
@@ -205,33 +213,64 @@ impl Group {
         (self.hull().half_area() / least).max(1.0)
     }
 
-    /// In two, each as close together as can be.
-    fn split(mut self) -> [Self; 2] {
-        let count = self.pieces.len();
-        let keys: [fn(&Aabb) -> f64; 4] =
-            [|b| b.center().x, |b| b.center().y, |b| b.center().z, Aabb::half_area];
-        let mut best = (f64::INFINITY, 0, 1_usize);
-        let mut behind = vec![0.0; count];
-        for (k, key) in keys.iter().enumerate() {
-            self.pieces.sort_by(|a, b| key(a).total_cmp(&key(b)));
+    /// In two: either each as close together as can be, or the small ones and the large ones,
+    /// whichever costs less.
+    fn split(self) -> [Self; 2] {
+        let cost = |halves: &[Self; 2]| halves[0].cost() + halves[1].cost();
+        let (near, alike) = (self.split_by_place(), self.split_by_size());
+        if cost(&near) < cost(&alike) { near } else { alike }
+    }
+
+    /// Where hulls of so many are smallest.
+    fn split_by_place(&self) -> [Self; 2] {
+        let mut best: Option<(f64, [Self; 2])> = None;
+        for axis in 0..3 {
+            let sorted = self.sorted(|piece| piece.center()[axis]);
+            let count = sorted.len();
+            let mut behind = vec![0.0; count];
             let mut hull = Aabb::EMPTY;
-            for i in (1..count).rev() {
-                hull = hull.hull(self.pieces[i]);
+            for (i, &piece) in sorted.iter().enumerate().rev() {
+                hull = hull.hull(piece);
                 behind[i] = (count - i) as f64 * hull.half_area();
             }
             hull = Aabb::EMPTY;
-            for ((i, behind), &piece) in (1_u32..).zip(&behind[1..]).zip(&self.pieces) {
-                hull = hull.hull(piece);
-                let sum = f64::from(i) * hull.half_area() + behind;
-                if sum < best.0 {
-                    best = (sum, k, i as usize);
-                }
+            let sum = |(i, behind): (usize, &f64)| {
+                hull = hull.hull(sorted[i]);
+                (i + 1, (i + 1) as f64 * hull.half_area() + behind)
+            };
+            let sums = behind[1..].iter().enumerate().map(sum);
+            let Some((at, sum)) = sums.min_by(|(_, a), (_, b)| a.total_cmp(b)) else {
+                continue;
+            };
+            if best.as_ref().is_none_or(|(least, _)| sum < *least) {
+                best = Some((sum, Self::halves(sorted, at)));
             }
         }
-        let (_, k, at) = best;
-        self.pieces.sort_by(|a, b| keys[k](a).total_cmp(&keys[k](b)));
-        let rest = self.pieces.split_off(at);
-        [self, Self { pieces: rest }]
+        best.map_or_else(|| self.split_by_size(), |(_, halves)| halves)
+    }
+
+    /// Where it costs least of the places where sizes differ most.
+    fn split_by_size(&self) -> [Self; 2] {
+        const TRIED: usize = 4;
+        let sorted = self.sorted(Aabb::half_area);
+        let step = |i: &usize| sorted[*i].half_area() / sorted[*i - 1].half_area();
+        let mut places: Vec<usize> = (1..sorted.len()).collect();
+        places.sort_by(|i, j| step(j).total_cmp(&step(i)));
+        let cost = |halves: &[Self; 2]| halves[0].cost() + halves[1].cost();
+        let tried = places.iter().take(TRIED).map(|&i| Self::halves(sorted.clone(), i));
+        let best = tried.min_by(|a, b| cost(a).total_cmp(&cost(b)));
+        best.unwrap_or_else(|| Self::halves(sorted, 0))
+    }
+
+    fn sorted(&self, key: impl Fn(&Aabb) -> f64) -> Vec<Aabb> {
+        let mut sorted = self.pieces.clone();
+        sorted.sort_by(|a, b| key(a).total_cmp(&key(b)));
+        sorted
+    }
+
+    fn halves(mut pieces: Vec<Aabb>, at: usize) -> [Self; 2] {
+        let rest = pieces.split_off(at);
+        [Self { pieces }, Self { pieces: rest }]
     }
 }
 
@@ -303,5 +342,93 @@ impl Tree {
             }
         }
         groups.iter().map(|&i| self.nodes[i].hull).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, dvec3};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::ray::Sense;
+
+    fn cube(center: DVec3, size: f64) -> Aabb {
+        Aabb::new(center - 0.5 * size, center + 0.5 * size)
+    }
+
+    /// Boxes with corners on a grid, so that many have sides in common.
+    fn boxes() -> impl Strategy<Value = Vec<Aabb>> {
+        let corner =
+            || [0..8_i32, 0..8_i32, 0..8_i32].prop_map(|p| p.map(f64::from).into());
+        let one = (corner(), corner()).prop_map(|(a, b): (DVec3, DVec3)| {
+            let (min, max) = (a.min(b), a.max(b) + 0.5);
+            Aabb::new(min, max)
+        });
+        prop::collection::vec(one, 1..12)
+    }
+
+    proptest! {
+        /// However boxes lie: of each span every stretch is of one part, and each end as well.
+        #[test]
+        fn every_point_of_a_ray_is_of_one_part(
+            mut boxes in boxes(),
+            [x, y, z] in [-1.0..9.0_f64, -1.0..9.0, -1.0..9.0],
+            [a, b, c] in [-1.0..1.0_f64, -1.0..1.0, 0.1..1.0],
+            [from, length] in [-4.0..4.0_f64, 0.01..8.0],
+        ) {
+            boxes.push(cube(DVec3::splat(4.0), 100.0));
+            let ray = Ray::new(dvec3(x, y, z), dvec3(a, b, c));
+            let at = |t, sense| Crossing { t, leaf: 0, face: 0, sense };
+            let enter = at(from, Sense::Enter);
+            let exit = at(from + length, Sense::Exit);
+            let (mut sum, mut ends, mut kept) = (0.0, [0, 0], Vec::new());
+            for stratum in Stratum::in_order(&boxes, |_| Vec::new()) {
+                stratum.clip(&ray, &[Span { enter, exit }], &mut kept, |stretch| {
+                    sum += stretch.to - stretch.from;
+                    for (count, end) in ends.iter_mut().zip(stretch.ends) {
+                        *count += u32::from(end.is_some());
+                    }
+                });
+            }
+            prop_assert!((sum - length).abs() < 1e-12, "{sum} {length}");
+            prop_assert_eq!(ends, [1, 1]);
+        }
+
+        /// Nothing is left out, whichever boxes there are and how many parts there may be.
+        #[test]
+        fn parts_hold_all_pieces(
+            pieces in prop::collection::vec(
+                ([-1.0..1.0_f64, -1.0..1.0, -1.0..1.0], 0.0..9.0_f64), 1..60
+            ),
+            most in 1..80_u64,
+        ) {
+            let piece = |([x, y, z], e): ([f64; 3], f64)| {
+                cube(dvec3(x, y, z), 10_f64.powf(-e))
+            };
+            let pieces: Vec<Aabb> = pieces.into_iter().map(piece).collect();
+            let found = divided(pieces.clone(), most);
+            prop_assert!(found.len() as u64 <= most);
+            for piece in &pieces {
+                let holds = |b: &Aabb| b.hull(*piece) == *b;
+                prop_assert!(found.is_empty() || found.iter().any(holds));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_close_together_is_not_divided() {
+        let at = |x: i32, y: i32| cube(dvec3(f64::from(x), f64::from(y), 0.0), 0.2);
+        let pins = || (0..10).flat_map(|x| (0..10).map(move |y| at(x, y)));
+        let plate = Aabb::new(dvec3(-1.0, -1.0, -1.0), dvec3(10.0, 10.0, 0.0));
+        let is_one = |pieces: Vec<Aabb>| divided(pieces, 64).len() < 2;
+        assert!(is_one(pins().collect()));
+        assert!(is_one(pins().chain([plate]).collect()));
+        assert!(is_one(vec![at(0, 0), at(1, 0)]));
+        // One of its kind is.
+        let screw = cube(dvec3(3.0, 3.0, 0.3), 0.02);
+        assert_eq!(divided(pins().chain([plate, screw]).collect(), 64).len(), 2);
+        let far = pins().map(|pin| Aabb::new(pin.min + 1e3, pin.max + 1e3));
+        assert_eq!(divided(pins().chain(far).collect(), 64).len(), 2);
     }
 }
