@@ -132,3 +132,44 @@ impl Parts {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, dvec3};
+
+    use super::*;
+    use crate::aabb::Aabb;
+    use crate::measure::beam::Beam;
+    use crate::measure::volume::{of_several, volume};
+    use crate::progress::unwatched;
+    use crate::sampling::{hash, unit};
+    use crate::scene::Scene;
+    use crate::solid::Solid;
+
+    /// It does not matter how space is divided, through whatever solid.
+    #[test]
+    fn parts_add_up_to_the_whole_of_any_division() {
+        let solid = (Solid::ball(1.0) - Solid::cuboid(dvec3(0.8, 0.8, 3.0)))
+            + Solid::cylinder(0.3, 2.0).rotated(DVec3::X, 1.0);
+        let scene = Scene::compile(&solid).expect("it is a solid");
+        let whole = volume(&scene, &Sampling::default());
+        let mut missed = 0;
+        for seed in 0..30 {
+            let number = |i: u64| unit(hash(seed, &[i]));
+            let point = |i: u64| {
+                let at = dvec3(number(3 * i), number(3 * i + 1), number(3 * i + 2));
+                4.0 * at - 2.0
+            };
+            let around = |i: u64| Aabb::around([point(2 * i), point(2 * i + 1)]);
+            let mut boxes: Vec<Aabb> = (0..5).map(around).collect();
+            boxes.push(scene.bounds().grown(0.1));
+            let strata = Stratum::in_order(&boxes, |bounds| vec![Beam::new(bounds)]);
+            let sampling = Sampling { rel_tol: 1e-3, seed, ..Sampling::default() };
+            let found = of_several(&scene, &strata, &sampling, &unwatched);
+            assert!(found.resolved && found.target_met, "{seed}: {found:?}");
+            let [low, high] = found.interval;
+            missed += u32::from(whole.value < low || high < whole.value);
+        }
+        assert!(missed <= 4, "{missed} of 30");
+    }
+}

@@ -66,11 +66,21 @@ pub fn volume_with(scene: &Scene, sampling: &Sampling, watch: Watch<'_>) -> Esti
         return Estimate::exact(0.0);
     }
     let strata = Stratum::divide(scene, sampling, |bounds| vec![Beam::new(bounds)]);
-    if let [one] = &strata[..] {
-        return of_one(scene, one, sampling, watch);
+    match &strata[..] {
+        [one] => of_one(scene, one, sampling, watch),
+        _ => of_several(scene, &strata, sampling, watch),
     }
+}
+
+/// The volume of what is in several strata, together.
+pub(super) fn of_several(
+    scene: &Scene,
+    strata: &[Stratum],
+    sampling: &Sampling,
+    watch: Watch<'_>,
+) -> Estimate {
     let (rounds, rays) = rounds(
-        &strata,
+        strata,
         sampling,
         watch,
         || (scene.bunch_tracer(), Vec::new()),
@@ -89,7 +99,7 @@ pub fn volume_with(scene: &Scene, sampling: &Sampling, watch: Watch<'_>) -> Esti
             });
         },
         |rounds, rays| {
-            let found = Parts::new(&strata, rounds);
+            let found = Parts::new(strata, rounds);
             let now = found.estimate(rays, sampling);
             if now.target_met {
                 return Next::Nothing;
@@ -101,7 +111,7 @@ pub fn volume_with(scene: &Scene, sampling: &Sampling, watch: Watch<'_>) -> Esti
         let bounds = scene.bounds();
         return nothing_known(bounds.size().element_product(), rays);
     }
-    Parts::new(&strata, &rounds).estimate(rays, sampling)
+    Parts::new(strata, &rounds).estimate(rays, sampling)
 }
 
 /// The volume of all in one stratum.
