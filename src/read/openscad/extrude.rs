@@ -6,7 +6,7 @@ use super::super::error::{Located, ReadErrorKind};
 use super::super::outline::{Extrusion, Outline};
 use super::arguments::Call;
 use super::combine;
-use super::curve;
+use super::curve::{self, Fineness};
 use super::evaluate::Reading;
 use super::node::Shape;
 use super::solids::is_size;
@@ -59,42 +59,115 @@ pub(super) fn linear_extrude(
         return Ok(Shape::Empty);
     };
     let bottom = if center { -0.5 * height } else { 0.0 };
-    let fault = |error| Located::at(call.place(), ReadErrorKind::Mesh(error));
-    let solid = if twist == 0.0 && scale.x == scale.y {
+    let sweep = Sweep { bottom, height, twist, scale };
+    let solid = if twist == 0.0 && sweep.is_even() {
         let extrusion = Extrusion { bottom, top: bottom + height, scale: scale.x };
-        outline.extruded(extrusion).map_err(fault)?
+        outline.extruded(extrusion).map(Some)
     } else {
+        sweep.sliced(&outline, call, reading)?
+    };
+    let solid =
+        solid.map_err(|error| Located::at(call.place(), ReadErrorKind::Mesh(error)))?;
+    Ok(solid.map_or(Shape::Empty, |solid| {
+        Shape::Solid(solid.placed(call.place()).as_outline())
+    }))
+}
+
+/// How an outline moves.
+#[derive(Clone, Copy, Debug)]
+struct Sweep {
+    bottom: f64,
+    height: f64,
+    /// In degrees, clockwise as seen from the top.
+    twist: f64,
+    /// What it is scaled by at the top.
+    scale: DVec2,
+}
+
+impl Sweep {
+    fn is_even(&self) -> bool {
+        self.scale.x - self.scale.y == 0.0
+    }
+
+    /// The polyhedron that OpenSCAD makes, of as many slices; nothing of an empty outline.
+    fn sliced(
+        &self,
+        outline: &Outline,
+        call: &Call<'_>,
+        reading: &mut Reading<'_>,
+    ) -> Result<Result<Option<Solid>, MeshError>, Located> {
         let tolerance = reading.options.facet_tolerance;
         let paths = outline.polygons(&|radius| curve::fine(radius, tolerance));
-        let reach = paths.iter().flatten().map(|p| p.length()).fold(0.0, f64::max);
         let slices = match call.number("slices")? {
             Some(slices) => curve::part(1, slices),
-            None => slices(call, &paths, reach, height, twist, scale)?,
+            None => self.slices(&curve::fineness(call)?, &paths),
         };
         let corners: usize = paths.iter().map(Vec::len).sum();
         let triangles = 2 * corners as u64 * u64::from(slices);
         reading.count_facets(triangles, call.place())?;
-        let section = |j: u32| {
-            let part = f64::from(j) / f64::from(slices);
-            let (sin, cos) = (sin_deg(-twist * part), cos_deg(-twist * part));
-            let scale = DVec2::ONE - (DVec2::ONE - scale) * part;
-            DAffine3 {
-                matrix3: DMat3::from_cols(
-                    (scale * DVec2::new(cos, sin)).extend(0.0),
-                    (scale * DVec2::new(-sin, cos)).extend(0.0),
-                    DVec3::Z,
-                ),
-                translation: (bottom + height * part) * DVec3::Z,
-            }
-        };
-        let sections: Vec<DAffine3> = (0..=slices).map(section).collect();
-        match loft(&paths, &sections, Ends::Open) {
-            Ok(mesh) => Solid::mesh(mesh),
-            Err(MeshError::NoFaces) => return Ok(Shape::Empty),
-            Err(error) => return Err(fault(error)),
+        let sections: Vec<DAffine3> = (0..=slices)
+            .map(|j| self.section(f64::from(j) / f64::from(slices)))
+            .collect();
+        Ok(match loft(&paths, &sections, Ends::Open) {
+            Ok(mesh) => Ok(Some(Solid::mesh(mesh))),
+            Err(MeshError::NoFaces) => Ok(None),
+            Err(error) => Err(error),
+        })
+    }
+
+    /// Where the outline is after a part of the way.
+    fn section(&self, part: f64) -> DAffine3 {
+        let (sin, cos) = (sin_deg(-self.twist * part), cos_deg(-self.twist * part));
+        let scale = DVec2::ONE - (DVec2::ONE - self.scale) * part;
+        DAffine3 {
+            matrix3: DMat3::from_cols(
+                (scale * DVec2::new(cos, sin)).extend(0.0),
+                (scale * DVec2::new(-sin, cos)).extend(0.0),
+                DVec3::Z,
+            ),
+            translation: (self.bottom + self.height * part) * DVec3::Z,
         }
-    };
-    Ok(Shape::Solid(solid.placed(call.place()).as_outline()))
+    }
+
+    /// How many slices OpenSCAD 2021.01 makes: enough for the helix of the corner that is
+    /// farthest from the axis, and for the way that the farthest corner moves.
+    fn slices(&self, fineness: &Fineness, paths: &[Vec<DVec2>]) -> u32 {
+        let Self { height, scale, .. } = *self;
+        let Fineness { count, angle, size } = *fineness;
+        let (angle, size) = (angle.max(0.01), size.max(0.01));
+        let farthest = |of: &dyn Fn(DVec2) -> f64| {
+            paths.iter().flatten().map(|&p| of(p)).fold(0.0, f64::max)
+        };
+        let by_moving = if self.is_even() {
+            1.0
+        } else if count > 0.0 {
+            count
+        } else {
+            let moved = farthest(&|p| (p * (scale - DVec2::ONE)).length());
+            (moved.hypot(height) / size).ceil()
+        };
+        let twist = self.twist.abs();
+        if twist == 0.0 {
+            return curve::part(1, by_moving);
+        }
+        let by_twist = if count > 0.0 {
+            (twist * count / 360.0).ceil()
+        } else {
+            let (reach, radians) = (farthest(&|p| p.length()), twist.to_radians());
+            let shrinks = (1.0 - scale.x).abs();
+            let way = if self.is_even() && shrinks > 0.0 {
+                // A spiral of Archimedes that ends where the scale would be zero.
+                let end = radians / shrinks * scale.x.max(1.0);
+                let along = |t: f64| 0.5 * reach / end * (t * t.hypot(1.0) + t.asinh());
+                along(end) - along(end - radians)
+            } else {
+                reach * radians
+            };
+            (twist / angle).ceil().min((way.hypot(height) / size).ceil())
+        };
+        let least = (twist / 120.0).ceil();
+        curve::part(1, by_twist.max(least).max(by_moving))
+    }
 }
 
 /// The union of the plane children; solid ones are ignored, with a warning.
@@ -114,44 +187,4 @@ pub(super) fn flat_children(
         Shape::Flat(outline) => Some(outline),
         Shape::Empty | Shape::Solid(_) => None,
     })
-}
-
-/// How many slices OpenSCAD 2021.01 makes: enough for the helices of the corner that is farthest
-/// from the axis, or for the way that the farthest corner moves.
-fn slices(
-    call: &Call<'_>,
-    paths: &[Vec<DVec2>],
-    reach: f64,
-    height: f64,
-    twist: f64,
-    scale: DVec2,
-) -> Result<u32, Located> {
-    let curve::Fineness { count, angle, size } = curve::fineness(call)?;
-    let (angle, size) = (angle.max(0.01), size.max(0.01));
-    let moved = |p: &DVec2| (*p * (scale - DVec2::ONE)).length_squared();
-    let far = paths.iter().flatten().map(moved).fold(0.0, f64::max);
-    let by_moving =
-        if count > 0.0 { count } else { ((far + height * height).sqrt() / size).ceil() };
-    if twist == 0.0 {
-        return Ok(curve::part(1, by_moving));
-    }
-    let is_even = scale.x == scale.y;
-    let turned = twist.abs();
-    let least = (turned / 120.0).ceil().max(1.0);
-    let slices = if count > 0.0 {
-        (turned * count / 360.0).ceil()
-    } else {
-        let radians = turned.to_radians();
-        let length = if is_even && scale.x != 1.0 {
-            // A spiral of Archimedes that ends where the radius would be zero.
-            let end = radians / (1.0 - scale.x).abs() * scale.x.max(1.0);
-            let along = |t: f64| 0.5 * reach / end * (t * t.hypot(1.0) + t.asinh());
-            (along(end) - along(end - radians)).hypot(height)
-        } else {
-            (reach * radians).hypot(height)
-        };
-        (turned / angle).ceil().min((length / size).ceil())
-    };
-    let by_moving = if is_even { 0.0 } else { by_moving };
-    Ok(curve::part(1, slices.max(least).max(by_moving)))
 }

@@ -17,7 +17,7 @@ pub(in crate::read) type Paths = Vec<Vec<DVec2>>;
 
 /// Coordinates are whole numbers up to 2 to this power, so that their differences and the sums of
 /// products of three are good to twelve digits.
-const BITS: i32 = 40;
+const BITS: f64 = 40.0;
 
 impl Outline {
     /// The polygons of the outline, circles with `segments` of their radius, none if it is empty.
@@ -26,8 +26,7 @@ impl Outline {
         if reach <= 0.0 || !reach.is_finite() {
             return Vec::new();
         }
-        let scale =
-            f64::from(BITS - 1 - reach.log2().ceil().clamp(-900.0, 900.0) as i32).exp2();
+        let scale = (BITS - 1.0 - reach.log2().ceil().clamp(-900.0, 900.0)).exp2();
         let mut clip = Clip { segments, scale };
         let Ok(paths) = self.fold(&mut clip);
         let back = |p: &Point64| DVec2::new(p.x as f64, p.y as f64) / scale;

@@ -93,7 +93,7 @@ fn trapezoids(paths: &Paths) -> Vec<Trapezoid> {
     let mut edges: Vec<[DVec2; 2]> = Vec::new();
     for path in paths {
         let next = path.iter().cycle().skip(1);
-        edges.extend(path.iter().zip(next).filter(|(a, b)| a.y != b.y).map(
+        edges.extend(path.iter().zip(next).filter(|(a, b)| a.y < b.y || b.y < a.y).map(
             |(&a, &b)| {
                 if a.y < b.y { [a, b] } else { [b, a] }
             },
