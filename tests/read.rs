@@ -141,7 +141,7 @@ fn refused_csg_is_located() {
         ),
         (
             "square(1);",
-            ": the model is two-dimensional; wrap it in linear_extrude to give it a thickness",
+            ": the model is two-dimensional; --plate THICKNESS or linear_extrude gives it a thickness",
         ),
         (
             "\n  polyhedron([[0,0,0],[1,0,0],[0,1,0]], [[0,1,2]]);",
@@ -593,6 +593,23 @@ fn scad_goes_through_openscad() {
     assert!(model.warnings.iter().any(|w| w.message.contains("hello")));
     let model = read::bytes(text.as_bytes(), &path, Format::Scad, &options).unwrap();
     assert!(!is_empty(&model));
+    // Variables and sets of parameters are passed on.
+    let sized = folder.path().join("sized.scad");
+    std::fs::write(&sized, "size = 1; cube([size, 1, 1]);").unwrap();
+    let sets = folder.path().join("sets.json");
+    let json = r#"{"parameterSets": {"wide": {"size": "7"}}, "fileFormatVersion": "1"}"#;
+    std::fs::write(&sets, json).unwrap();
+    let width = |options: &ReadOptions| {
+        let solid = read::file(&sized, options).unwrap().solid;
+        solidray::Scene::compile(&solid).unwrap().bounds().size().x
+    };
+    let defined =
+        ReadOptions { definitions: vec!["size = 3".to_owned()], ..options.clone() };
+    let chosen =
+        ReadOptions { parameters: Some((sets, "wide".to_owned())), ..options.clone() };
+    let found = [&options, &defined, &chosen].map(width);
+    assert_eq!(found, [1.0, 3.0, 7.0]);
+
     let error = read::bytes(b"cube(", &path, Format::Scad, &options).unwrap_err();
     assert!(error.to_string().contains("openscad could not convert it"), "{error}");
     let error =
@@ -826,4 +843,12 @@ fn faces_that_cross_themselves_take_no_longer_than_others() {
     }
     let (simple, star) = (seconds(1), seconds(149));
     assert!(star < 20.0 * simple, "{star} s for stars, {simple} s for polygons");
+}
+
+#[test]
+fn plane_models_are_plates_if_that_is_wanted() {
+    let options = ReadOptions { plate: Some(2.5), ..ReadOptions::default() };
+    let read = read::bytes(b"square([2, 3]);", Path::new("a.csg"), Format::Csg, &options);
+    let scene = solidray::Scene::compile(&read.expect("a plate").solid).expect("a box");
+    assert_eq!(scene.bounds().size(), glam::dvec3(2.0, 3.0, 2.5));
 }

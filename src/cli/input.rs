@@ -25,6 +25,23 @@ pub(super) struct Reading {
     /// The OpenSCAD program that converts .scad files [default: openscad on PATH]
     #[arg(long, value_name = "PROGRAM", help_heading = "Reading")]
     openscad: Option<PathBuf>,
+    /// Set a variable of a .scad file, as OpenSCAD's own -D does; may be given several times
+    #[arg(short = 'D', value_name = "NAME=VALUE", help_heading = "Reading")]
+    define: Vec<String>,
+    /// A file with sets of parameters, for .scad files
+    #[arg(short = 'p', value_name = "FILE", requires = "set", help_heading = "Reading")]
+    parameters: Option<PathBuf>,
+    /// Which set of parameters
+    #[arg(
+        short = 'P',
+        value_name = "SET",
+        requires = "parameters",
+        help_heading = "Reading"
+    )]
+    set: Option<String>,
+    /// Give two-dimensional models this thickness
+    #[arg(long, value_name = "THICKNESS", value_parser = super::sampling::positive, help_heading = "Reading")]
+    plate: Option<f64>,
     /// Make one of surfaces no farther apart than this anywhere on a leaf, measured square
     /// to them; `check` says which length a model wants
     #[arg(long, value_name = "LENGTH", default_value_t = 0.0, value_parser = length, help_heading = "Reading")]
@@ -131,6 +148,9 @@ impl Reading {
             max_bytes: self.max_bytes,
             max_facets: self.max_facets,
             facet_tolerance: self.facet_tolerance,
+            plate: self.plate,
+            definitions: self.define.clone(),
+            parameters: self.parameters.clone().zip(self.set.clone()),
         };
         if file.as_os_str() != "-" {
             return Ok(read::file(file, &options)?);

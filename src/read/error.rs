@@ -96,7 +96,7 @@ pub enum ReadErrorKind {
     },
     /// The whole model is flat.
     #[error(
-        "the model is two-dimensional; wrap it in linear_extrude to give it a thickness"
+        "the model is two-dimensional; --plate THICKNESS or linear_extrude gives it a thickness"
     )]
     TwoDimensional,
     /// An imported file is at fault.

@@ -20,6 +20,12 @@ pub struct ReadOptions {
     /// How far facets may be from true curves where curves have no exact solid (in twisted
     /// extrusions, offsets and revolved circles), in model units.
     pub facet_tolerance: f64,
+    /// The thickness that plane models get, from z = 0 up; without one they are refused.
+    pub plate: Option<f64>,
+    /// Values for variables of `.scad` files, as `name=value` in OpenSCAD's language.
+    pub definitions: Vec<String>,
+    /// A file of OpenSCAD's customizer and the name of the set of parameters in it.
+    pub parameters: Option<(PathBuf, String)>,
 }
 
 impl Default for ReadOptions {
@@ -33,6 +39,9 @@ impl Default for ReadOptions {
             max_bytes: 1 << 30,
             max_facets: 30_000_000,
             facet_tolerance: 0.005,
+            plate: None,
+            definitions: Vec::new(),
+            parameters: None,
         }
     }
 }

@@ -48,6 +48,14 @@ fn converted(
     let mut command = Command::new(&program);
     // Without --render, $preview is true and many models leave parts out.
     command.arg("--render=1").arg("-o").arg(&csg);
+    for definition in &options.definitions {
+        command.arg("-D").arg(definition);
+    }
+    if let Some((file, set)) = &options.parameters {
+        // The program may be run in another folder.
+        let file = std::path::absolute(file).map_err(|e| fault(ReadErrorKind::Io(e)))?;
+        command.arg("-p").arg(file).arg("-P").arg(set);
+    }
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let output = match run(&mut command) {
         Ok(output) => output,

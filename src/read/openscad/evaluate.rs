@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::super::error::{Located, ReadErrorKind};
 use super::super::load::Budget;
+use super::super::outline::Extrusion;
 use super::super::words::quoted;
 use super::super::{Model, ReadOptions, Warning};
 use super::arguments::Call;
@@ -89,7 +90,13 @@ pub(super) fn model(
     let start = Place { line: 1, column: 1 };
     reading.model.solid = match combine::all(shapes, "the file", start, &mut reading) {
         Shape::Solid(solid) => solid,
-        Shape::Flat(_) => return Err(Located::nowhere(ReadErrorKind::TwoDimensional)),
+        Shape::Flat(outline) => {
+            let Some(top) = options.plate else {
+                return Err(Located::nowhere(ReadErrorKind::TwoDimensional));
+            };
+            let plate = outline.extruded(Extrusion { bottom: 0.0, top, scale: 1.0 });
+            plate.map_err(|error| Located::nowhere(ReadErrorKind::Mesh(error)))?
+        }
         // Nothing of what was meant is left.
         Shape::Empty => match reading.left_out {
             Some(error) => return Err(error),
