@@ -26,7 +26,8 @@ pub(super) struct Rung<'a> {
     pub(super) is_random: bool,
 }
 
-/// Climbs as far as the time allows, and no farther than a rung that comes to nothing. The next
+/// Climbs from the first rung that comes to something as far as the time allows, and no farther than
+/// a rung that comes to nothing again. The next
 /// rung is taken for `growth` times as long as the one before, or for as many times as long as
 /// that was longer than its own.
 pub(super) fn climb<'a>(
@@ -49,8 +50,12 @@ pub(super) fn climb<'a>(
         if next > left || interrupted() {
             break;
         }
-        let Some(trial) = trial(&rung, left / 3.0) else { break };
-        trials.push(trial);
+        match trial(&rung, left / 3.0) {
+            Some(trial) => trials.push(trial),
+            // The first rungs can be too low to say anything.
+            None if trials.is_empty() => {}
+            None => break,
+        }
     }
     trials
 }
