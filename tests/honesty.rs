@@ -6,7 +6,9 @@ mod solids;
 #[path = "../examples/honesty/views.rs"]
 mod views;
 
+use glam::{DAffine3, DMat3, DVec3, dvec2, dvec3};
 use solidray::measure::{self, Sampling};
+use solidray::{Scene, Solid};
 use solids::{Subject, subjects, traps};
 use views::where_views_agree;
 
@@ -98,4 +100,46 @@ fn intervals_hold_where_views_agree_and_are_wrong() {
     }
     assert_eq!(fooled.len(), 4, "{fooled:?}");
     assert!(unresolved[0] > 0 && unresolved[1] == 0, "{unresolved:?}");
+}
+
+/// A cube with slits that run along the rays, at such distances that all points of a lattice of
+/// 233, which the first ones are, are at the same place between two slits, however it is shifted:
+/// its points lie on lines across (13, 8), a vector of its dual lattice.
+fn slit_cube(filled: f64) -> Solid {
+    // How far rays lean, and how much wider than the cube their lattices are, is written in the
+    // beam; here the slits follow it.
+    let (lean, dual) = (dvec3(1.0, 0.31, 0.23), dvec2(13.0, 8.0));
+    let wide = dvec2(1.31, 1.23);
+    let across = (dual / dual.length_squared() * wide).extend(0.0);
+    let along = (dual.perp() / dual.length_squared() * wide).extend(0.0);
+    let to_space = |v: DVec3| dvec3(v.z, v.x, v.y);
+    let map =
+        DAffine3::from_mat3(DMat3::from_cols(to_space(across), to_space(along), lean));
+    let slit = |k: i32| {
+        let from = dvec3(f64::from(k) + filled, -60.0, -1.0);
+        Solid::cuboid_between(from, dvec3(f64::from(k + 1), 60.0, 1.0)).mapped(map)
+    };
+    let cube = Solid::cuboid_between(DVec3::splat(-0.5), DVec3::splat(0.5));
+    (-14..14).fold(cube, |cube, k| cube - slit(k))
+}
+
+/// All lattices of one size agreed on what was wrong, and the answer rested on them.
+#[test]
+fn slits_between_the_points_of_a_lattice_are_found() {
+    for filled in [0.95, 0.8] {
+        let scene = Scene::compile(&slit_cube(filled)).expect("a cube with slits");
+        let of = |seed, rel_tol| {
+            let sampling = Sampling { seed, rel_tol, ..Sampling::default() };
+            measure::volume(&scene, &sampling)
+        };
+        let truth = of(1 << 40, 1e-4).value;
+        assert!((truth / filled - 1.0).abs() < 0.05, "{truth} {filled}");
+        let held = |&seed: &u64| {
+            let [low, high] = of(seed, 1e-2).interval;
+            (low..=high).contains(&truth)
+        };
+        let held = (0..100).filter(held).count();
+        // Fewer than 84 of 100 hold with a chance of 1e-5 if 95 % do.
+        assert!(held >= 84, "{held} of 100, filled to {filled}");
+    }
 }

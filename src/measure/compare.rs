@@ -73,6 +73,10 @@ impl Tally for Tallies {
         self.difference.add(later.difference);
         self.worst = longer(self.worst, later.worst);
     }
+
+    fn has_hits(&self) -> bool {
+        self.sums.iter().any(Tally::has_hits)
+    }
 }
 
 /// Measures the two solids, A − B and B − A with the same rays, until the verdict is clear

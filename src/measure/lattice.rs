@@ -75,6 +75,9 @@ impl Sampling {
 pub(super) trait Tally: Default + Send {
     /// Adds what later rays found.
     fn add(&mut self, later: Self);
+
+    /// Whether any ray met the solid.
+    fn has_hits(&self) -> bool;
 }
 
 /// What each lattice of one round found in one stratum.
@@ -192,7 +195,9 @@ pub(super) fn rounds<S, T: Tally>(
             .min(sampling.max_rays.saturating_sub(rays) as f64)
             / beams as f64;
         let following = match wanted(&rounds, rays) {
-            Next::Nothing => None,
+            Next::Nothing => {
+                confirmed(&rounds).and_then(|factors| larger(&parts, &factors, most))
+            }
             Next::Lattices(count) => more(&parts, count, most),
             Next::Larger(factors) => larger(&parts, &factors, most),
         };
@@ -205,6 +210,21 @@ pub(super) fn rounds<S, T: Tally>(
         }
         parts = following;
     }
+}
+
+/// What is still to be made larger before an answer is given: no answer rests on the smallest
+/// lattices. Something periodic can meet all of them alike, however they are shifted, in which case
+/// they agree without being right; the next larger ones have other periods.
+fn confirmed<T: Tally>(rounds: &[Round<T>]) -> Option<Vec<Option<f64>>> {
+    /// To the next number of Fibonacci.
+    const LARGER: f64 = 1.5;
+    let first = Fibonacci::at_least(FIRST).len();
+    let is_smallest = |round: &Round<T>| {
+        round.size == first && round.replicates.iter().any(Tally::has_hits)
+    };
+    let factors: Vec<Option<f64>> =
+        rounds.iter().map(|round| is_smallest(round).then_some(LARGER)).collect();
+    factors.iter().any(Option::is_some).then_some(factors)
 }
 
 /// More lattices of each stratum, so that there are `count` of them, with at most `most` rays of

@@ -34,6 +34,10 @@ impl Tally for Sum {
         self.chords.uncertain += later.chords.uncertain;
         self.hits += later.hits;
     }
+
+    fn has_hits(&self) -> bool {
+        self.hits > 0
+    }
 }
 
 /// The volume, in cubic model units, by lattices of rays all but parallel to the longest

@@ -246,4 +246,8 @@ impl Tally for Found {
         self.uncertain += later.uncertain;
         self.reached.0 = self.reached.0.hull(later.reached.0);
     }
+
+    fn has_hits(&self) -> bool {
+        self.hits > 0
+    }
 }
