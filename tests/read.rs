@@ -105,7 +105,7 @@ fn refused_csg_is_located() {
         ("/* cube(1);", ":1:1: expected `*/`, found a comment that does not end"),
         ("*;", ":1:2: expected a statement, found `;`"),
         ("/* ü */ é();", ":1:9: expected a statement, found `é`"),
-        ("group() {\n\thull() { cube(1); }\n}", ":2:2: `hull` is not supported yet"),
+        ("group() {\n\troof() { cube(1); }\n}", ":2:2: `roof` is not supported yet"),
         (
             "linear_extrude(height = 1, v = [0, 1, 1]) square(1);",
             ":1:1: `linear_extrude` with `v` is not supported yet",
@@ -613,10 +613,10 @@ fn scad_goes_through_openscad() {
     let error = read::bytes(b"cube(", &path, Format::Scad, &options).unwrap_err();
     assert!(error.to_string().contains("openscad could not convert it"), "{error}");
     let error =
-        read::bytes(b"hull() cube(1);", &path, Format::Scad, &options).unwrap_err();
+        read::bytes(b"surface(\"a.png\");", &path, Format::Scad, &options).unwrap_err();
     let error = error.to_string();
     assert!(
-        error.ends_with("part.scad as .csg:1:1: `hull` is not supported yet"),
+        error.ends_with("part.scad as .csg:1:1: `surface` is not supported yet"),
         "{error}"
     );
 }

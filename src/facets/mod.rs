@@ -6,11 +6,15 @@
 //! (<https://github.com/elalish/manifold>).
 
 mod boundary;
+mod hull;
+mod parts;
 mod replace;
 
 use thiserror::Error;
 
 pub use boundary::boundary;
+pub(crate) use hull::{Operand, hull, sum, triangles_of_sum};
+pub(crate) use parts::{Fine, parts};
 pub use replace::{Faceted, faceted};
 
 use crate::mesh::MeshError;

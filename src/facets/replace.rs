@@ -154,7 +154,7 @@ impl Replace {
 }
 
 /// The radius of a cylinder or cone at a height.
-fn radius_at(profile: &Profile, z: f64) -> f64 {
+pub(super) fn radius_at(profile: &Profile, z: f64) -> f64 {
     match *profile {
         Profile::Cylinder { radius } => radius,
         Profile::Cone { radius, slope } => (radius + slope * z).max(0.0),
@@ -166,7 +166,7 @@ fn radius_at(profile: &Profile, z: f64) -> f64 {
 }
 
 /// The twelve triangles of a box.
-fn cuboid(min: DVec3, max: DVec3) -> Result<Mesh, crate::MeshError> {
+pub(super) fn cuboid(min: DVec3, max: DVec3) -> Result<Mesh, crate::MeshError> {
     let faces = [
         [0, 2, 1],
         [1, 2, 3],

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::facets::FacetsError;
 use crate::mesh::MeshError;
 use crate::solid::Place;
 
@@ -75,6 +76,9 @@ pub enum ReadErrorKind {
     /// The points and faces do not bound a solid.
     #[error("{0}")]
     Mesh(MeshError),
+    /// There are no facets where some are needed.
+    #[error("{0}")]
+    Facets(FacetsError),
     /// Curves and polygons would have more triangles than
     /// [`ReadOptions::max_facets`](super::ReadOptions::max_facets).
     #[error(

@@ -15,6 +15,7 @@
 
 mod arguments;
 mod combine;
+mod convex;
 mod curve;
 mod evaluate;
 mod extrude;

@@ -4,7 +4,9 @@ use super::super::error::Located;
 use super::super::outline::Outline;
 use super::arguments::Call;
 use super::evaluate::Reading;
-use super::{combine, extrude, import, outlines, polyhedron, revolve, solids, transform};
+use super::{
+    combine, convex, extrude, import, outlines, polyhedron, revolve, solids, transform,
+};
 use crate::solid::Solid;
 
 /// What a statement stands for.
@@ -65,6 +67,8 @@ pub(super) fn node(name: &str) -> Option<Node> {
         "color" => (transform::color, &["c", "alpha"]),
         "rotate_extrude" => (revolve::rotate_extrude, revolve::PARAMETERS),
         "linear_extrude" => (extrude::linear_extrude, extrude::PARAMETERS),
+        "hull" => (convex::hull, &[]),
+        "minkowski" => (convex::minkowski, &["convexity"]),
         _ => return None,
     };
     Some(Node { parameters, make })

@@ -7,6 +7,7 @@
 //! ```
 
 mod extrude;
+mod hull;
 mod paths;
 mod revolve;
 
@@ -18,7 +19,8 @@ use crate::op::Op;
 use crate::solid::Tag;
 
 pub(super) use extrude::Extrusion;
-pub(super) use paths::Paths;
+pub(super) use hull::{hull, sum};
+pub(super) use paths::{Paths, filled};
 pub(super) use revolve::{in_wedge, revolved, turned};
 
 /// A plane shape: cheap to clone, never changed.

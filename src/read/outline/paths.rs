@@ -23,16 +23,44 @@ impl Outline {
     /// The polygons of the outline, circles with `segments` of their radius, none if it is empty.
     pub(in crate::read) fn polygons(&self, segments: &dyn Fn(f64) -> u32) -> Paths {
         let Ok(reach) = self.fold(&mut Reach);
-        if reach <= 0.0 || !reach.is_finite() {
-            return Vec::new();
-        }
-        let scale = (BITS - 1.0 - reach.log2().ceil().clamp(-900.0, 900.0)).exp2();
+        let Some(scale) = scale(reach) else { return Vec::new() };
         let mut clip = Clip { segments, scale };
         let Ok(paths) = self.fold(&mut clip);
-        let back = |p: &Point64| DVec2::new(p.x as f64, p.y as f64) / scale;
-        let ring = |path: &Path64| path.iter().map(back).collect();
-        union_subjects_64(&paths, FillRule::NonZero).iter().map(ring).collect()
+        back(&union_subjects_64(&paths, FillRule::NonZero), scale)
     }
+}
+
+/// What closed paths wind around, as simple polygons.
+pub(in crate::read) fn filled(paths: &Paths) -> Paths {
+    let points = paths.iter().flatten();
+    let reach = points.map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let Some(scale) = scale(reach) else { return Vec::new() };
+    let rounded: Paths64 = paths
+        .iter()
+        .map(|path| path.iter().map(|&p| rounded(p, scale)).collect())
+        .collect();
+    back(&union_subjects_64(&rounded, FillRule::NonZero), scale)
+}
+
+/// By what coordinates up to some size are multiplied; `None` if there are no sizes.
+fn scale(reach: f64) -> Option<f64> {
+    if reach <= 0.0 || !reach.is_finite() {
+        return None;
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "it is clamped")]
+    let bits = reach.log2().ceil().clamp(-900.0, 900.0) as i32;
+    Some(f64::from(BITS - 1 - bits).exp2())
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the scale makes it small enough")]
+fn rounded(p: DVec2, scale: f64) -> Point64 {
+    let p = (p * scale).round();
+    Point64::new(p.x as i64, p.y as i64)
+}
+
+fn back(paths: &Paths64, scale: f64) -> Paths {
+    let point = |p: &Point64| DVec2::new(p.x as f64, p.y as f64) / scale;
+    paths.iter().map(|path| path.iter().map(point).collect()).collect()
 }
 
 /// A polygon with so many corners that has the area of a circle: every other corner would do for
@@ -89,15 +117,8 @@ struct Clip<'a> {
 }
 
 impl Clip<'_> {
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "the scale makes it small enough"
-    )]
     fn path(&self, points: &[DVec2], within: &Within) -> Path64 {
-        let place = |&p: &DVec2| {
-            let p = (within.map.transform_point2(p) * self.scale).round();
-            Point64::new(p.x as i64, p.y as i64)
-        };
+        let place = |&p: &DVec2| rounded(within.map.transform_point2(p), self.scale);
         points.iter().map(place).collect()
     }
 }

@@ -1,0 +1,248 @@
+//! A solid as a union of meshes in its own frame, curves as fine polyhedra.
+
+use std::f64::consts::PI;
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::replace::{cuboid, radius_at};
+use super::{Faceted, FacetsError, boundary};
+use crate::aabb::Aabb;
+use crate::mesh::{Mesh, MeshError, round};
+use crate::op::Op;
+use crate::progress::unwatched;
+use crate::shape::{Primitive, Profile};
+use crate::solid::{Kind, Solid};
+
+/// What polyhedra stand for curves.
+pub(crate) struct Fine<'a> {
+    /// How many segments a curve gets by its largest radius.
+    pub(crate) segments: &'a dyn Fn(f64) -> u32,
+    /// How many triangles there may be in all.
+    pub(crate) most_triangles: u64,
+}
+
+/// Meshes whose union is a solid. What is subtracted or intersected becomes one mesh; what is only
+/// united is left as it is.
+///
+/// # Errors
+///
+/// If there would be too many triangles, or Manifold does not take a mesh.
+pub(crate) fn parts(solid: &Solid, fine: &Fine<'_>) -> Result<Vec<Mesh>, FacetsError> {
+    let mut making = Making { fine, triangles: 0, reach: reach(solid) };
+    let mut parts = Vec::new();
+    let mut open = vec![(solid, DAffine3::IDENTITY)];
+    while let Some((solid, map)) = open.pop() {
+        let children = solid.children();
+        match solid.kind() {
+            Kind::Mapped(own) => {
+                open.extend(children.iter().map(|child| (child, map * **own)));
+            }
+            Kind::Tagged(_) | Kind::Boolean(Op::Union) => {
+                open.extend(children.iter().rev().map(|child| (child, map)));
+            }
+            Kind::Boolean(_) if children.len() == 1 => {
+                open.extend(children.iter().map(|child| (child, map)));
+            }
+            Kind::Boolean(_) => {
+                let solid = making.tree(solid, map)?;
+                let faceted = Faceted { solid, curves: 0, triangles: making.triangles };
+                parts.extend(boundary(&faceted, &unwatched)?);
+            }
+            Kind::Primitive(_) | Kind::Mesh(_) => {
+                parts.extend(making.leaf(solid, &map)?);
+            }
+        }
+    }
+    Ok(parts)
+}
+
+/// Makes meshes of leaves.
+struct Making<'a> {
+    fine: &'a Fine<'a>,
+    /// How many triangles were made so far.
+    triangles: u64,
+    /// How far from the origin anything reaches that has bounds.
+    reach: f64,
+}
+
+impl Making<'_> {
+    /// A subtree with meshes in the frame of the whole as leaves, none of them mapped.
+    fn tree(&mut self, solid: &Solid, map: DAffine3) -> Result<Solid, FacetsError> {
+        let mut values: Vec<Solid> = Vec::new();
+        let mut open = vec![(solid, map, false)];
+        while let Some((solid, map, seen)) = open.pop() {
+            let children = solid.children();
+            match solid.kind() {
+                Kind::Mapped(own) => {
+                    open.extend(children.iter().map(|c| (c, map * **own, false)));
+                }
+                Kind::Tagged(_) => {
+                    open.extend(children.iter().map(|c| (c, map, false)));
+                }
+                Kind::Boolean(op) if seen => {
+                    let operands = values.split_off(values.len() - children.len());
+                    values.push(Solid::boolean(*op, operands));
+                }
+                Kind::Boolean(_) => {
+                    open.push((solid, map, true));
+                    open.extend(children.iter().rev().map(|c| (c, map, false)));
+                }
+                Kind::Primitive(_) | Kind::Mesh(_) => {
+                    let mesh = self.leaf(solid, &map)?;
+                    values.push(mesh.map_or_else(Solid::empty, Solid::mesh));
+                }
+            }
+        }
+        Ok(values.pop().unwrap_or_else(Solid::empty))
+    }
+
+    fn count(&mut self, more: u64) -> Result<(), FacetsError> {
+        self.triangles = self.triangles.saturating_add(more);
+        let (count, limit) = (self.triangles, self.fine.most_triangles);
+        if count > limit { Err(FacetsError::TooMany { count, limit }) } else { Ok(()) }
+    }
+
+    /// A leaf under a map; nothing of a half-space beyond everything.
+    fn leaf(
+        &mut self,
+        solid: &Solid,
+        map: &DAffine3,
+    ) -> Result<Option<Mesh>, FacetsError> {
+        let m = map.matrix3;
+        let stretch = m.x_axis.length().max(m.y_axis.length()).max(m.z_axis.length());
+        let mesh = match solid.kind() {
+            Kind::Mesh(mesh) => {
+                self.count(mesh.faces().len() as u64)?;
+                moved(mesh.points().to_vec(), mesh.faces().to_vec(), map)?
+            }
+            Kind::Primitive(Primitive::Cuboid { min, max }) => {
+                self.count(12)?;
+                mapped(&cuboid(*min, *max)?, map)?
+            }
+            Kind::Primitive(Primitive::Quadric {
+                profile: Profile::Ball { radius },
+                bottom,
+                top,
+            }) if *bottom <= -radius && *top >= *radius => {
+                let segments = (self.fine.segments)(radius * stretch);
+                self.count(round::ball_triangles(segments))?;
+                mapped(&ball(segments, *radius)?, map)?
+            }
+            Kind::Primitive(Primitive::Quadric {
+                profile: profile @ (Profile::Cylinder { .. } | Profile::Cone { .. }),
+                bottom,
+                top,
+            }) => {
+                let radii = [*bottom, *top].map(|z| radius_at(profile, z));
+                let segments = (self.fine.segments)(radii[0].max(radii[1]) * stretch);
+                self.count(round::frustum_triangles(segments))?;
+                let radii = radii.map(|r| r * with_area(segments));
+                mapped(&round::frustum(segments, radii, [*bottom, *top])?, map)?
+            }
+            Kind::Primitive(Primitive::HalfSpace { normal, offset }) => {
+                self.count(12)?;
+                return self.half_space(*normal, *offset, map);
+            }
+            Kind::Primitive(primitive @ Primitive::Quadric { .. }) => {
+                return Err(FacetsError::NoFacets(primitive.name()));
+            }
+            Kind::Boolean(_) | Kind::Mapped(_) | Kind::Tagged(_) => return Ok(None),
+        };
+        Ok(Some(mesh))
+    }
+
+    /// As much of a half-space as there is of anything else, and more.
+    fn half_space(
+        &self,
+        normal: DVec3,
+        offset: f64,
+        map: &DAffine3,
+    ) -> Result<Option<Mesh>, FacetsError> {
+        let inverse = map.matrix3.inverse();
+        let across = inverse.transpose() * normal;
+        let offset = (offset + across.dot(map.translation)) / across.length();
+        let far = 4.0 * self.reach;
+        if offset.is_nan() || offset < -far {
+            return Ok(None);
+        }
+        let top = offset.min(far);
+        let z = across.normalize_or(DVec3::Z);
+        let (x, y) = z.any_orthonormal_pair();
+        let frame = DAffine3::from_mat3(DMat3::from_cols(x, y, z));
+        let corner = DVec3::new(far, far, top);
+        Ok(Some(mapped(&cuboid(-DVec3::splat(2.0 * far), corner)?, &frame)?))
+    }
+}
+
+/// By what the radius of a polygon is larger than that of a circle of the same area.
+fn with_area(segments: u32) -> f64 {
+    let half = PI / f64::from(segments);
+    (half / (half.sin() * half.cos())).sqrt()
+}
+
+/// A polyhedron with the volume of a ball.
+fn ball(segments: u32, radius: f64) -> Result<Mesh, MeshError> {
+    let mesh = round::ball(segments, radius)?;
+    let scale = (4.0 / 3.0 * PI * radius.powi(3) / mesh.volume()).cbrt();
+    let points = mesh.points().iter().map(|&p| scale * p).collect();
+    Mesh::new(points, mesh.faces().to_vec())
+}
+
+fn mapped(mesh: &Mesh, map: &DAffine3) -> Result<Mesh, MeshError> {
+    moved(mesh.points().to_vec(), mesh.faces().to_vec(), map)
+}
+
+/// A mesh of points under a map, whose faces look outwards.
+fn moved(
+    mut points: Vec<DVec3>,
+    mut faces: Vec<[u32; 3]>,
+    map: &DAffine3,
+) -> Result<Mesh, MeshError> {
+    points.iter_mut().for_each(|p| *p = map.transform_point3(*p));
+    if map.matrix3.determinant() < 0.0 {
+        faces.iter_mut().for_each(|[a, b, _]| std::mem::swap(a, b));
+    }
+    Mesh::new(points, faces)
+}
+
+/// How far from the origin the leaves of a solid reach that have bounds.
+fn reach(solid: &Solid) -> f64 {
+    let mut reach: f64 = 0.0;
+    let mut open = vec![(solid, DAffine3::IDENTITY)];
+    while let Some((solid, map)) = open.pop() {
+        let children = solid.children();
+        let (below, around) = match solid.kind() {
+            Kind::Mapped(own) => (map * **own, None),
+            Kind::Tagged(_) | Kind::Boolean(_) => (map, None),
+            Kind::Mesh(mesh) => (map, Some(mesh.bounds())),
+            Kind::Primitive(primitive) => (map, bounds(primitive)),
+        };
+        open.extend(children.iter().map(|child| (child, below)));
+        if let Some(around) = around {
+            let corners = around.corners().map(|p| below.transform_point3(p).length());
+            reach = corners.into_iter().fold(reach, f64::max);
+        }
+    }
+    reach
+}
+
+/// A box around a primitive that has one.
+fn bounds(primitive: &Primitive) -> Option<Aabb> {
+    match primitive {
+        Primitive::Cuboid { min, max } => Some(Aabb::new(*min, *max)),
+        Primitive::Quadric { profile, bottom, top } => {
+            let radius = match profile {
+                Profile::Ball { radius } | Profile::Cylinder { radius } => *radius,
+                profile @ Profile::Cone { .. } => {
+                    radius_at(profile, *bottom).max(radius_at(profile, *top))
+                }
+                Profile::Paraboloid { .. }
+                | Profile::OneSheet { .. }
+                | Profile::TwoSheets { .. } => return None,
+            };
+            let side = DVec3::new(radius, radius, 0.0);
+            Some(Aabb::new(*bottom * DVec3::Z - side, *top * DVec3::Z + side))
+        }
+        Primitive::HalfSpace { .. } => None,
+    }
+}
