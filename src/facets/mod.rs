@@ -6,6 +6,7 @@
 //! (<https://github.com/elalish/manifold>).
 
 mod boundary;
+mod flatten;
 mod hull;
 mod parts;
 mod replace;
@@ -13,8 +14,9 @@ mod replace;
 use thiserror::Error;
 
 pub use boundary::boundary;
+pub(crate) use flatten::{section, shadow};
 pub(crate) use hull::{Operand, hull, sum, triangles_of_sum};
-pub(crate) use parts::{Fine, parts};
+pub(crate) use parts::{Fine, of_meshes, parts};
 pub use replace::{Faceted, faceted};
 
 use crate::mesh::MeshError;

@@ -56,6 +56,16 @@ pub(crate) fn parts(solid: &Solid, fine: &Fine<'_>) -> Result<Vec<Mesh>, FacetsE
     Ok(parts)
 }
 
+/// A solid whose leaves are meshes in its own frame, so that nothing in it is mapped or tagged.
+///
+/// # Errors
+///
+/// If there would be too many triangles.
+pub(crate) fn of_meshes(solid: &Solid, fine: &Fine<'_>) -> Result<Solid, FacetsError> {
+    let mut making = Making { fine, triangles: 0, reach: reach(solid) };
+    making.tree(solid, DAffine3::IDENTITY)
+}
+
 /// Makes meshes of leaves.
 struct Making<'a> {
     fine: &'a Fine<'a>,

@@ -25,6 +25,7 @@ mod node;
 mod outlines;
 mod parse;
 mod polyhedron;
+mod project;
 mod revolve;
 mod solids;
 #[cfg(test)]

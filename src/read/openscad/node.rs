@@ -5,7 +5,8 @@ use super::super::outline::Outline;
 use super::arguments::Call;
 use super::evaluate::Reading;
 use super::{
-    combine, convex, extrude, import, outlines, polyhedron, revolve, solids, transform,
+    combine, convex, extrude, import, outlines, polyhedron, project, revolve, solids,
+    transform,
 };
 use crate::solid::Solid;
 
@@ -69,6 +70,7 @@ pub(super) fn node(name: &str) -> Option<Node> {
         "linear_extrude" => (extrude::linear_extrude, extrude::PARAMETERS),
         "hull" => (convex::hull, &[]),
         "minkowski" => (convex::minkowski, &["convexity"]),
+        "projection" => (project::projection, &["cut", "convexity"]),
         _ => return None,
     };
     Some(Node { parameters, make })
