@@ -16,7 +16,7 @@ use thiserror::Error;
 pub use boundary::boundary;
 pub(crate) use flatten::{section, shadow};
 pub(crate) use hull::{Operand, hull, sum, triangles_of_sum};
-pub(crate) use parts::{Fine, of_meshes, parts};
+pub(crate) use parts::{Fine, bounds_of_union, of_meshes, parts};
 pub use replace::{Faceted, faceted};
 
 use crate::mesh::MeshError;

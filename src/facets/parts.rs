@@ -256,3 +256,58 @@ fn bounds(primitive: &Primitive) -> Option<Aabb> {
         Primitive::HalfSpace { .. } => None,
     }
 }
+
+/// The bounds of a solid that is a union, with curves as they are; `None` if something is
+/// subtracted or intersected.
+pub(crate) fn bounds_of_union(solid: &Solid) -> Option<Aabb> {
+    let mut around = Aabb::EMPTY;
+    let mut open = vec![(solid, DAffine3::IDENTITY)];
+    while let Some((solid, map)) = open.pop() {
+        let children = solid.children();
+        let rows = map.matrix3.transpose();
+        let rows = [rows.x_axis, rows.y_axis, rows.z_axis];
+        let found = match solid.kind() {
+            Kind::Mapped(own) => {
+                open.extend(children.iter().map(|child| (child, map * **own)));
+                continue;
+            }
+            Kind::Boolean(op) if *op != Op::Union && children.len() > 1 => return None,
+            Kind::Tagged(_) | Kind::Boolean(_) => {
+                open.extend(children.iter().map(|child| (child, map)));
+                continue;
+            }
+            Kind::Mesh(mesh) => {
+                let used = mesh.faces().iter().flatten();
+                let points = used.map(|&i| mesh.points()[i as usize]);
+                Aabb::around(points.map(|p| map.transform_point3(p)))
+            }
+            Kind::Primitive(Primitive::Quadric {
+                profile: Profile::Ball { radius },
+                bottom,
+                top,
+            }) if *bottom <= -radius && *top >= *radius => {
+                let side = *radius * DVec3::from_array(rows.map(DVec3::length));
+                Aabb::new(map.translation - side, map.translation + side)
+            }
+            Kind::Primitive(Primitive::Quadric {
+                profile: profile @ (Profile::Cylinder { .. } | Profile::Cone { .. }),
+                bottom,
+                top,
+            }) => {
+                let lengths = rows.map(|row| row.truncate().length());
+                let end = |z: f64| {
+                    let side = radius_at(profile, z) * DVec3::from_array(lengths);
+                    let center = map.transform_point3(z * DVec3::Z);
+                    Aabb::new(center - side, center + side)
+                };
+                end(*bottom).hull(end(*top))
+            }
+            Kind::Primitive(Primitive::Cuboid { min, max }) => {
+                Aabb::new(*min, *max).mapped(&map)
+            }
+            Kind::Primitive(_) => return None,
+        };
+        around = around.hull(found);
+    }
+    Some(around)
+}

@@ -26,6 +26,7 @@ mod outlines;
 mod parse;
 mod polyhedron;
 mod project;
+mod resize;
 mod revolve;
 mod solids;
 #[cfg(test)]

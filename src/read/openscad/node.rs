@@ -5,8 +5,8 @@ use super::super::outline::Outline;
 use super::arguments::Call;
 use super::evaluate::Reading;
 use super::{
-    combine, convex, extrude, import, outlines, polyhedron, project, revolve, solids,
-    transform,
+    combine, convex, extrude, import, outlines, polyhedron, project, resize, revolve,
+    solids, transform,
 };
 use crate::solid::Solid;
 
@@ -71,6 +71,7 @@ pub(super) fn node(name: &str) -> Option<Node> {
         "hull" => (convex::hull, &[]),
         "minkowski" => (convex::minkowski, &["convexity"]),
         "projection" => (project::projection, &["cut", "convexity"]),
+        "resize" => (resize::resize, &["newsize", "auto", "convexity"]),
         _ => return None,
     };
     Some(Node { parameters, make })

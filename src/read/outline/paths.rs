@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use clipper2_rust::{
     FillRule, Path64, Paths64, Point64, difference_64, intersect_64, union_subjects_64,
 };
-use glam::DVec2;
+use glam::{DAffine2, DVec2};
 
 use super::{Fold, Outline, Shape, Within};
 use crate::mesh::round;
@@ -27,6 +27,12 @@ impl Outline {
         let mut clip = Clip { segments, scale };
         let Ok(paths) = self.fold(&mut clip);
         back(&union_subjects_64(&paths, FillRule::NonZero), scale)
+    }
+
+    /// The corners of the smallest box around an outline that is not empty and a union; `None` if
+    /// something is subtracted or intersected.
+    pub(in crate::read) fn bounds_of_union(&self) -> Option<[DVec2; 2]> {
+        self.fold(&mut Bounds).ok()
     }
 }
 
@@ -61,6 +67,47 @@ fn rounded(p: DVec2, scale: f64) -> Point64 {
 fn back(paths: &Paths64, scale: f64) -> Paths {
     let point = |p: &Point64| DVec2::new(p.x as f64, p.y as f64) / scale;
     paths.iter().map(|path| path.iter().map(point).collect()).collect()
+}
+
+/// The box around unions.
+struct Bounds;
+
+impl Fold<[DVec2; 2], ()> for Bounds {
+    fn shape(&mut self, shape: &Shape, within: &Within) -> Result<[DVec2; 2], ()> {
+        let map = within.map;
+        Ok(match shape {
+            Shape::Square { min, max } => {
+                let others = [DVec2::new(max.x, min.y), DVec2::new(min.x, max.y)];
+                around([*min, *max].into_iter().chain(others), &map)
+            }
+            Shape::Circle { radius } => {
+                let rows = map.matrix2.transpose();
+                let side =
+                    *radius * DVec2::new(rows.x_axis.length(), rows.y_axis.length());
+                [map.translation - side, map.translation + side]
+            }
+            Shape::Paths(paths) => around(paths.iter().flatten().copied(), &map),
+        })
+    }
+
+    fn boolean(&mut self, op: Op, parts: Vec<[DVec2; 2]>) -> Result<[DVec2; 2], ()> {
+        if op != Op::Union && parts.len() > 1 {
+            return Err(());
+        }
+        Ok(around(parts.into_iter().flatten(), &DAffine2::IDENTITY))
+    }
+
+    fn tagged(&mut self, _: &Tag, part: [DVec2; 2]) -> [DVec2; 2] {
+        part
+    }
+}
+
+fn around(points: impl Iterator<Item = DVec2>, map: &DAffine2) -> [DVec2; 2] {
+    points
+        .map(|p| map.transform_point2(p))
+        .fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], p| {
+            [low.min(p), high.max(p)]
+        })
 }
 
 /// A polygon with so many corners that has the area of a circle: every other corner would do for
