@@ -118,7 +118,7 @@ fn from_mesh(mesh: &Mesh) -> Result<Manifold, FacetsError> {
     checked(Manifold::from_mesh_glp(&gl))
 }
 
-pub(super) fn to_mesh(manifold: &Manifold) -> Result<Option<Mesh>, FacetsError> {
+fn to_mesh(manifold: &Manifold) -> Result<Option<Mesh>, FacetsError> {
     if manifold.is_empty() {
         return Ok(None);
     }
@@ -129,7 +129,7 @@ pub(super) fn to_mesh(manifold: &Manifold) -> Result<Option<Mesh>, FacetsError> 
     Ok(Some(Mesh::new(points, faces)?))
 }
 
-pub(super) fn checked(manifold: Manifold) -> Result<Manifold, FacetsError> {
+fn checked(manifold: Manifold) -> Result<Manifold, FacetsError> {
     let status = manifold.status();
     if status == Error::NoError {
         Ok(manifold)

@@ -1,22 +1,37 @@
 //! Convex hulls, and sums of solids by Minkowski that are made of them.
 
-use glam::DVec3;
-use manifold_rust::linalg::Vec3;
-use manifold_rust::manifold::Manifold;
+use std::collections::HashMap;
 
-use super::FacetsError;
-use super::boundary::{checked, to_mesh};
-use crate::mesh::Mesh;
+use glam::DVec3;
+
+use super::{FacetsError, quickhull};
+use crate::mesh::{Mesh, MeshError};
 
 /// The convex hull of points; `None` if they are flat.
 ///
 /// # Errors
 ///
-/// If Manifold makes no hull of them.
+/// If a point is not finite.
 pub(crate) fn hull(points: &[DVec3]) -> Result<Option<Mesh>, FacetsError> {
-    let points: Vec<Vec3> = points.iter().map(|p| Vec3::new(p.x, p.y, p.z)).collect();
-    let hull = to_mesh(&checked(Manifold::hull(&points))?)?;
-    Ok(hull.filter(|mesh| mesh.volume() > 0.0))
+    let mut faces = quickhull::faces(points);
+    if faces.is_empty() {
+        return Ok(None);
+    }
+    // Points that are no corners are left out.
+    let mut numbers: HashMap<u32, u32> = HashMap::new();
+    let mut corners = Vec::new();
+    for corner in faces.iter_mut().flatten() {
+        *corner = *numbers.entry(*corner).or_insert_with(|| {
+            corners.push(points[*corner as usize]);
+            u32::try_from(corners.len() - 1).unwrap_or(u32::MAX)
+        });
+    }
+    match Mesh::new(corners, faces) {
+        Ok(mesh) => Ok(Some(mesh).filter(|mesh| mesh.volume() > 0.0)),
+        // So thin that its volume is a rounding error.
+        Err(MeshError::InsideOut { .. }) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
 }
 
 /// How many triangles the sum of two solids has, about.
@@ -42,10 +57,9 @@ impl Operand {
     ///
     /// # Errors
     ///
-    /// If Manifold makes no hull of it.
+    /// If a point is not finite.
     pub(crate) fn new(mesh: Mesh) -> Result<Self, FacetsError> {
-        /// What rounding may take from the volume of a hull: points are within a ten-millionth of
-        /// its size.
+        /// What rounding of points may take from the volume of a hull.
         const ROUNDING: f64 = 1e-9;
         let used: Vec<DVec3> = corners(&mesh).collect();
         let Some(hull) = hull(&used)? else {
@@ -69,7 +83,7 @@ impl Operand {
 ///
 /// # Errors
 ///
-/// If Manifold makes no hull.
+/// If a point is not finite.
 pub(crate) fn sum(a: &Operand, b: &Operand) -> Result<Vec<Mesh>, FacetsError> {
     match (a.is_convex, b.is_convex) {
         (true, true) => {

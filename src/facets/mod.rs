@@ -8,7 +8,10 @@
 mod boundary;
 mod flatten;
 mod hull;
+#[cfg(test)]
+mod hull_tests;
 mod parts;
+mod quickhull;
 mod replace;
 
 use thiserror::Error;
