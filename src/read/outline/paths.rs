@@ -54,8 +54,7 @@ fn scale(reach: f64) -> Option<f64> {
         return None;
     }
     #[expect(clippy::cast_possible_truncation, reason = "it is clamped")]
-    let bits = reach.log2().ceil().clamp(-900.0, 900.0) as i32;
-    Some(f64::from(BITS - 1 - bits).exp2())
+    Some((BITS - 1.0 - reach.log2().ceil().clamp(-900.0, 900.0)).exp2())
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the scale makes it small enough")]
