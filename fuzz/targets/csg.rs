@@ -13,7 +13,9 @@ fuzz_target!(|bytes: &[u8]| {
         _ if is_coarse(text) => Curves::Faceted,
         _ => return,
     };
-    let options = ReadOptions { curves, ..ReadOptions::default() };
+    // No other program is started.
+    let openscad = Some("no-such-program".into());
+    let options = ReadOptions { curves, openscad, ..ReadOptions::default() };
     solidray_fuzz::check(text, Format::Csg, &options);
 });
 

@@ -106,6 +106,19 @@ pub enum ReadErrorKind {
     /// An imported file is at fault.
     #[error("import: {0}")]
     Import(Box<ReadError>),
+    /// There is no font to write a text with.
+    #[error(
+        "there is no font to write `text` with; install one such as Liberation Sans (`apt install fonts-liberation`)"
+    )]
+    NoFont,
+    /// There is no program to evaluate what is not supported here.
+    #[error("{what} is left to `{}`, which was not found; install OpenSCAD (openscad.org, or `apt install openscad`)", .program.display())]
+    OpenscadMissingFor {
+        /// What is not supported.
+        what: String,
+        /// The program that was looked for.
+        program: PathBuf,
+    },
     /// There is no program to convert `.scad`.
     #[error("`{}` is needed to read .scad files, but was not found; install OpenSCAD (openscad.org, or `apt install openscad`) or export a .csg with it elsewhere", .program.display())]
     OpenscadMissing {
@@ -145,6 +158,11 @@ impl Located {
     ) -> Self {
         let (expected, found) = (expected.into(), found.into());
         Self::at(place, ReadErrorKind::Syntax { expected, found })
+    }
+
+    /// The fault, at a place if it has none.
+    pub(super) fn or_at(self, place: Place) -> Self {
+        Self { place: self.place.or(Some(place)), ..self }
     }
 
     pub(super) fn named(self, path: &Path) -> ReadError {

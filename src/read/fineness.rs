@@ -42,6 +42,6 @@ impl Fineness {
     clippy::cast_sign_loss,
     reason = "conversion saturates, which is as good as any number too large to build"
 )]
-fn whole(x: f64) -> u32 {
+pub(super) fn whole(x: f64) -> u32 {
     x as u32
 }

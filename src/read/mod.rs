@@ -10,6 +10,7 @@
 //! `cli/input.rs`; and what models may import, in `openscad/import.rs`. The compiler only
 //! asks for the arms.
 
+mod dxf;
 mod error;
 mod faces;
 mod fineness;

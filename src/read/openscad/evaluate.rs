@@ -12,6 +12,7 @@ use super::super::{Model, ReadOptions, Warning};
 use super::arguments::Call;
 use super::combine;
 use super::curve::Key;
+use super::elsewhere;
 use super::node::{Node, Shape, node};
 use super::value::Document;
 use crate::mesh::Mesh;
@@ -31,6 +32,12 @@ pub(super) struct Reading<'a> {
     facets: u64,
     /// The files imported so far.
     pub(super) imports: HashMap<PathBuf, Arc<Mesh>>,
+    /// What OpenSCAD has made so far, by the texts it was given.
+    pub(super) elsewhere: HashMap<String, Shape>,
+    /// What it was asked for.
+    pub(super) asked: Vec<String>,
+    /// The installed fonts, once one was needed.
+    pub(super) fonts: Option<fontdb::Database>,
     /// How much may still be imported.
     pub(super) budget: Budget,
     /// Why the first of those polyhedra was left out that bound no solid.
@@ -82,6 +89,9 @@ pub(super) fn model(
         curves: HashMap::new(),
         facets: 0,
         imports: HashMap::new(),
+        elsewhere: HashMap::new(),
+        asked: Vec::new(),
+        fonts: None,
         budget,
         left_out: None,
     };
@@ -138,7 +148,15 @@ fn shapes(
             let parameters = frame.node.parameters;
             let call = Call { document, statement, parameters };
             call.warn_of_unknown(reading);
-            let shape = (frame.node.make)(&call, frame.children, reading)?;
+            let shape = match made_elsewhere(document, &frame, reading)? {
+                Some(shape) => shape,
+                None => match (frame.node.make)(&call, frame.children, reading) {
+                    Err(Located { kind: ReadErrorKind::Unsupported(what), .. }) => {
+                        elsewhere::evaluated(document, frame.statement, what, reading)?
+                    }
+                    made => made?,
+                },
+            };
             let outer = open.last_mut().map_or(&mut outermost, |f| &mut f.children);
             outer.push(shape);
         }
@@ -152,10 +170,35 @@ fn shapes(
             continue;
         }
         let Some(node) = node(statement.name) else {
+            if elsewhere::is_known(statement.name) {
+                let what = quoted(statement.name.as_bytes());
+                let shape = elsewhere::evaluated(document, next, what, reading)?;
+                let outer = open.last_mut().map_or(&mut outermost, |f| &mut f.children);
+                outer.push(shape);
+                next = statement.end as usize;
+                continue;
+            }
             let kind = ReadErrorKind::Unsupported(quoted(statement.name.as_bytes()));
             return Err(Located::at(statement.place, kind));
         };
         open.push(Frame { node, statement: next, children: Vec::new() });
         next += 1;
+    }
+}
+
+/// What OpenSCAD makes of a node that it makes better, if it is installed.
+fn made_elsewhere(
+    document: &Document<'_>,
+    frame: &Frame,
+    reading: &mut Reading<'_>,
+) -> Result<Option<Shape>, Located> {
+    let name = document.statements[frame.statement].name;
+    if !elsewhere::is_better(name) {
+        return Ok(None);
+    }
+    let what = quoted(name.as_bytes());
+    match elsewhere::evaluated(document, frame.statement, what, reading) {
+        Err(Located { kind: ReadErrorKind::OpenscadMissingFor { .. }, .. }) => Ok(None),
+        made => made.map(Some),
     }
 }

@@ -1,18 +1,22 @@
-//! `import` of meshes.
+//! `import` of meshes and drawings.
 
 use std::path::Path;
 use std::sync::Arc;
 
+use glam::DVec2;
+
+use super::super::dxf;
 use super::super::error::{Located, ReadError, ReadErrorKind};
 use super::super::faces::{Faces, TURNED};
 use super::super::load::Budget;
 use super::super::options::Format;
-use super::super::words::quoted;
+use super::super::outline::Outline;
 use super::arguments::Call;
+use super::curve;
 use super::evaluate::Reading;
 use super::node::Shape;
-use crate::mesh::Mesh;
-use crate::solid::Solid;
+use crate::mesh::{Mesh, round};
+use crate::solid::{Solid, Tag};
 
 /// A mesh from a file, looked for in the folder of the `.csg`. A file that is missing is
 /// an error here, though OpenSCAD goes on without it.
@@ -23,11 +27,12 @@ pub(super) fn import(
 ) -> Result<Shape, Located> {
     let Some(name) = call.text("file")? else { return Ok(Shape::Empty) };
     let path = reading.folder.join(&name);
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("dxf")) {
+        return drawing(&path, call, reading);
+    }
     let format = Format::of(&path);
     let Some(format @ (Format::Obj | Format::Stl | Format::Off)) = format else {
-        let ending = path.extension().unwrap_or_default().to_string_lossy();
-        let ending = quoted(format!(".{ending}").as_bytes());
-        return Err(call.unsupported(format!("import of {ending} files")));
+        return Err(left(&path, call));
     };
     let mesh = match reading.imports.get(&path) {
         Some(mesh) => mesh.clone(),
@@ -45,6 +50,62 @@ pub(super) fn import(
         }
     };
     Ok(Shape::Solid(Solid::mesh(mesh).placed(call.place())))
+}
+
+/// That a file is one that only OpenSCAD reads, or none that can be read.
+fn left(path: &Path, call: &Call<'_>) -> Located {
+    /// What OpenSCAD imports, but is not read here.
+    const ENDINGS: [&str; 4] = ["3mf", "amf", "nef3", "svg"];
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let ending = ending.to_ascii_lowercase();
+    if !ENDINGS.contains(&ending.as_str()) {
+        let known =
+            "a file that ends in .stl, .off, .obj, .dxf, .svg, .3mf, .amf or .nef3";
+        let value = call.value("file").unwrap_or_default();
+        return call.wrong("file", known, value);
+    }
+    match std::fs::metadata(path) {
+        Ok(_) => call.unsupported(format!("import of `.{ending}` files")),
+        Err(error) => {
+            let error = Located::nowhere(ReadErrorKind::Io(error)).named(path);
+            Located::at(call.place(), ReadErrorKind::Import(Box::new(error)))
+        }
+    }
+}
+
+/// The closed lines of a `.dxf`.
+fn drawing(
+    path: &Path,
+    call: &Call<'_>,
+    reading: &mut Reading<'_>,
+) -> Result<Shape, Located> {
+    let layer = call.text("layer")?.unwrap_or_default();
+    let origin = DVec2::from_array(call.sizes("origin")?.unwrap_or([0.0; 2]));
+    let scale = call.number("scale")?.unwrap_or(1.0);
+    let named = |error: Located| {
+        // What cannot be read here, OpenSCAD may read.
+        if matches!(error.kind, ReadErrorKind::Unsupported(_)) {
+            return Located::at(call.place(), error.kind);
+        }
+        let error = Box::new(error.named(path));
+        Located::at(call.place(), ReadErrorKind::Import(error))
+    };
+    let loaded = reading.budget.load(path).map_err(Located::nowhere);
+    let bytes = loaded.map_err(named)?;
+    let tolerance = reading.options.facet_tolerance;
+    let mut segments = |radius: f64| {
+        let segments = curve::segments(radius, call, reading)?;
+        let segments = segments.unwrap_or_else(|| curve::fine(radius, tolerance));
+        reading.count_facets(round::frustum_triangles(segments), call.place())?;
+        Ok(segments)
+    };
+    let mut paths = dxf::read(&bytes, &layer, &mut segments).map_err(named)?;
+    let points = paths.iter_mut().flatten();
+    points.for_each(|p| *p = scale * (*p - origin));
+    if paths.is_empty() || scale == 0.0 {
+        return Ok(Shape::Empty);
+    }
+    Ok(Shape::Flat(Outline::paths(paths).tagged(Tag::Place(call.place()))))
 }
 
 fn load(

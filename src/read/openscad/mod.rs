@@ -17,11 +17,13 @@ mod arguments;
 mod combine;
 mod convex;
 mod curve;
+mod elsewhere;
 mod evaluate;
 mod extrude;
 mod import;
 mod lex;
 mod node;
+mod offset;
 mod outlines;
 mod parse;
 mod polyhedron;
@@ -29,8 +31,10 @@ mod project;
 mod resize;
 mod revolve;
 mod solids;
+mod surface;
 #[cfg(test)]
 mod tests;
+mod text;
 mod transform;
 mod value;
 

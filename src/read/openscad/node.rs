@@ -5,8 +5,8 @@ use super::super::outline::Outline;
 use super::arguments::Call;
 use super::evaluate::Reading;
 use super::{
-    combine, convex, extrude, import, outlines, polyhedron, project, resize, revolve,
-    solids, transform,
+    combine, convex, extrude, import, offset, outlines, polyhedron, project, resize,
+    revolve, solids, surface, text, transform,
 };
 use crate::solid::Solid;
 
@@ -60,6 +60,11 @@ pub(super) fn node(name: &str) -> Option<Node> {
                 "timestamp",
             ],
         ),
+        "offset" => (offset::offset, &["r", "delta", "chamfer"]),
+        "surface" => {
+            (surface::surface, &["file", "center", "convexity", "invert", "timestamp"])
+        }
+        "text" => (text::text, text::PARAMETERS),
         "group" | "union" => (combine::union, &[]),
         "render" => (combine::union, &["convexity"]),
         "difference" => (combine::difference, &[]),

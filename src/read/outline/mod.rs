@@ -8,6 +8,7 @@
 
 mod extrude;
 mod hull;
+mod offset;
 mod paths;
 mod revolve;
 
@@ -20,6 +21,7 @@ use crate::solid::Tag;
 
 pub(super) use extrude::Extrusion;
 pub(super) use hull::{hull, sum};
+pub(super) use offset::{Join, offset, offset_with_arcs};
 pub(super) use paths::{Paths, filled};
 pub(super) use revolve::{in_wedge, revolved, turned};
 

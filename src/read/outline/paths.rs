@@ -38,6 +38,11 @@ impl Outline {
 
 /// What closed paths wind around, as simple polygons.
 pub(in crate::read) fn filled(paths: &Paths) -> Paths {
+    filled_by(paths, FillRule::NonZero)
+}
+
+/// What closed paths enclose by a rule, as simple polygons.
+pub(super) fn filled_by(paths: &Paths, rule: FillRule) -> Paths {
     let points = paths.iter().flatten();
     let reach = points.map(|p| p.abs().max_element()).fold(0.0, f64::max);
     let Some(scale) = scale(reach) else { return Vec::new() };
@@ -45,7 +50,7 @@ pub(in crate::read) fn filled(paths: &Paths) -> Paths {
         .iter()
         .map(|path| path.iter().map(|&p| rounded(p, scale)).collect())
         .collect();
-    back(&union_subjects_64(&rounded, FillRule::NonZero), scale)
+    back(&union_subjects_64(&rounded, rule), scale)
 }
 
 /// By what coordinates up to some size are multiplied; `None` if there are no sizes.
@@ -53,7 +58,6 @@ fn scale(reach: f64) -> Option<f64> {
     if reach <= 0.0 || !reach.is_finite() {
         return None;
     }
-    #[expect(clippy::cast_possible_truncation, reason = "it is clamped")]
     Some((BITS - 1.0 - reach.log2().ceil().clamp(-900.0, 900.0)).exp2())
 }
 

@@ -1,0 +1,278 @@
+//! Nodes that are not evaluated here: the installed OpenSCAD does it, with facets.
+//!
+//! It gets the text of the node alone and gives a mesh, or for a plane shape an `.svg` of straight
+//! lines.
+
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use glam::DVec2;
+
+use super::super::error::{Located, ReadErrorKind};
+use super::super::faces::Faces;
+use super::super::load::Budget;
+use super::super::off;
+use super::super::outline::Outline;
+use super::evaluate::Reading;
+use super::node::Shape;
+use super::value::{Document, Value};
+use crate::solid::{Solid, Tag};
+
+/// How long it may take over one node.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+/// The nodes of OpenSCAD that are known, but not made here.
+const NODES: &[&str] = &["fill", "roof"];
+
+/// Whether a node is one that OpenSCAD can make.
+pub(super) fn is_known(name: &str) -> bool {
+    NODES.contains(&name)
+}
+
+/// Whether OpenSCAD makes a node better than this program does: it places the letters of texts that
+/// are not flush left on the baseline by rules that are not known here.
+pub(super) fn is_better(name: &str) -> bool {
+    name == "text"
+}
+
+/// What OpenSCAD makes of a statement; `what` is why it is asked.
+pub(super) fn evaluated(
+    document: &Document<'_>,
+    statement: usize,
+    what: String,
+    reading: &mut Reading<'_>,
+) -> Result<Shape, Located> {
+    let place = document.statements[statement].place;
+    let text = text(document, statement, reading.folder);
+    let shape = match reading.elsewhere.get(&text) {
+        Some(shape) => shape.clone(),
+        None => {
+            let program = reading.options.openscad.clone();
+            let program = program.unwrap_or_else(|| PathBuf::from("openscad"));
+            let made = made(&text, &program, &what, &mut reading.budget);
+            let shape = made.map_err(|error| error.or_at(place))?;
+            reading.elsewhere.insert(text, shape.clone());
+            shape
+        }
+    };
+    if !reading.asked.contains(&what) {
+        reading.warn(place, format!("{what} is left to OpenSCAD, which makes facets"));
+        reading.asked.push(what);
+    }
+    Ok(match shape {
+        Shape::Empty => Shape::Empty,
+        Shape::Flat(outline) => Shape::Flat(outline.tagged(Tag::Place(place))),
+        Shape::Solid(solid) => Shape::Solid(solid.placed(place)),
+    })
+}
+
+fn made(
+    text: &str,
+    program: &Path,
+    what: &str,
+    budget: &mut Budget,
+) -> Result<Shape, Located> {
+    let fault = |kind| Located::nowhere(kind);
+    let io = |error| fault(ReadErrorKind::Io(error));
+    let folder = tempfile::tempdir().map_err(io)?;
+    let source = folder.path().join("node.csg");
+    std::fs::write(&source, text).map_err(io)?;
+    let mut export = |name: &str| {
+        let file = folder.path().join(name);
+        let (status, said) =
+            run(program, &source, &file, folder.path()).map_err(|error| {
+                if error.kind() == io::ErrorKind::NotFound {
+                    let (what, program) = (what.to_owned(), program.to_owned());
+                    fault(ReadErrorKind::OpenscadMissingFor { what, program })
+                } else {
+                    io(error)
+                }
+            })?;
+        let failed = |status: String| {
+            let stderr = said.trim().to_owned();
+            Err(fault(ReadErrorKind::OpenscadFailed { status, stderr }))
+        };
+        match status {
+            _ if said.contains("Can't open") => failed("a file is missing".to_owned()),
+            _ if said.contains("Ignoring unknown module") => {
+                failed("it does not know the node".to_owned())
+            }
+            Some(status) if status.success() => {
+                Ok(Some(budget.load(&file).map_err(fault)?))
+            }
+            Some(_) if said.contains("object is empty") => Ok(None),
+            Some(_) if said.contains("not a 3D object") => Ok(Some(Vec::new())),
+            Some(status) => failed(status.to_string()),
+            None => failed(format!("stopped after {} seconds", PATIENCE.as_secs())),
+        }
+    };
+    let Some(mesh) = export("node.off")? else { return Ok(Shape::Empty) };
+    if !mesh.is_empty() {
+        // Places in that file mean nothing in this one.
+        let built = off::read(&mesh).and_then(Faces::build).map_err(|e| fault(e.kind))?;
+        return Ok(Shape::Solid(Solid::mesh(built.mesh)));
+    }
+    let Some(picture) = export("node.svg")? else { return Ok(Shape::Empty) };
+    let paths = lines(&String::from_utf8_lossy(&picture));
+    if paths.is_empty() {
+        let status = "its drawing has no lines".to_owned();
+        return Err(fault(ReadErrorKind::OpenscadFailed {
+            status,
+            stderr: String::new(),
+        }));
+    }
+    Ok(Shape::Flat(Outline::paths(paths)))
+}
+
+/// Runs the program; its end, if it ended in time, and what it said.
+fn run(
+    program: &Path,
+    source: &Path,
+    file: &Path,
+    folder: &Path,
+) -> io::Result<(Option<ExitStatus>, String)> {
+    let log = folder.join("said");
+    let mut child = Command::new(program)
+        .arg("--render=1")
+        .arg("-o")
+        .args([file, source])
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(File::create(&log)?)
+        .spawn()?;
+    let start = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break Some(status);
+        }
+        if start.elapsed() > PATIENCE {
+            child.kill()?;
+            child.wait()?;
+            break None;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    let said = Budget::new(1 << 20).load(&log).unwrap_or_default();
+    Ok((status, String::from_utf8_lossy(&said).into_owned()))
+}
+
+/// The closed lines of an `.svg` that OpenSCAD writes: all in one path of `M`, `L` and `z`, with
+/// y downwards.
+fn lines(picture: &str) -> Vec<Vec<DVec2>> {
+    let mut paths: Vec<Vec<DVec2>> = Vec::new();
+    for path in picture.split("<path d=\"").skip(1) {
+        for word in path.split('"').next().unwrap_or_default().split_ascii_whitespace() {
+            if word == "M" {
+                paths.push(Vec::new());
+            }
+            let numbers = word.split_once(',');
+            let point = numbers.and_then(|(x, y)| {
+                Some(DVec2::new(x.parse().ok()?, -y.parse::<f64>().ok()?))
+            });
+            if let (Some(point), Some(path)) = (point, paths.last_mut()) {
+                path.push(point);
+            }
+        }
+    }
+    paths
+}
+
+/// The text of a statement and what is in its braces, with the files it names by their whole
+/// paths.
+fn text(document: &Document<'_>, statement: usize, folder: &Path) -> String {
+    let mut text = String::new();
+    let mut open: Vec<usize> = Vec::new();
+    let end = document.statements[statement].end as usize;
+    for (i, statement) in document.statements[..end].iter().enumerate().skip(statement) {
+        while open.pop_if(|end| *end <= i).is_some() {
+            text.push('}');
+        }
+        let modifiers = statement.modifiers;
+        if modifiers.disabled || modifiers.background {
+            text.push(if modifiers.disabled { '*' } else { '%' });
+        }
+        text.push_str(statement.name);
+        text.push('(');
+        for index in statement.arguments.clone() {
+            let argument = &document.arguments[index as usize];
+            comma(&mut text);
+            if let Some(name) = argument.name {
+                let _ = write!(text, "{name}=");
+            }
+            let file = match argument.name {
+                Some("file") => document.string(argument.value),
+                None if matches!(statement.name, "import" | "surface") => {
+                    document.string(argument.value)
+                }
+                _ => None,
+            };
+            match file {
+                Some(file) => {
+                    let whole = std::path::absolute(folder.join(file));
+                    let whole = whole.unwrap_or_default().to_string_lossy().into_owned();
+                    let whole = whole.replace('\\', "\\\\").replace('"', "\\\"");
+                    let _ = write!(text, "\"{whole}\"");
+                }
+                None => value(document, argument.value as usize, &mut text),
+            }
+        }
+        text.push(')');
+        if statement.end as usize > i + 1 {
+            text.push('{');
+            open.push(statement.end as usize);
+        } else {
+            text.push_str(";\n");
+        }
+    }
+    text.extend(open.iter().map(|_| '}'));
+    text
+}
+
+/// The text of a value and all that is in it.
+fn value(document: &Document<'_>, value: usize, text: &mut String) {
+    let mut open: Vec<usize> = Vec::new();
+    let end = match document.values[value] {
+        Value::Vector { end } => end as usize,
+        Value::Undef | Value::Bool(_) | Value::Number(_) | Value::Text { .. } => {
+            value + 1
+        }
+    };
+    for i in value..end {
+        while open.pop_if(|end| *end <= i).is_some() {
+            text.push(']');
+        }
+        if i > value {
+            comma(text);
+        }
+        match document.values[i] {
+            Value::Vector { end } => {
+                text.push('[');
+                open.push(end as usize);
+                continue;
+            }
+            Value::Undef => text.push_str("undef"),
+            Value::Bool(truth) => text.push_str(if truth { "true" } else { "false" }),
+            Value::Number(x) if x.is_finite() => {
+                let _ = write!(text, "{x:e}");
+            }
+            // There is no literal for others.
+            Value::Number(_) => text.push_str("(0/0)"),
+            Value::Text { start, end } => {
+                let raw = &document.text[start as usize..end as usize];
+                let _ = write!(text, "\"{}\"", String::from_utf8_lossy(raw));
+            }
+        }
+    }
+    text.extend(open.iter().map(|_| ']'));
+}
+
+/// What separates an argument or element from the one before.
+fn comma(text: &mut String) {
+    if !text.ends_with(['(', '[']) {
+        text.push(',');
+    }
+}

@@ -1,0 +1,218 @@
+//! Plane shapes, height fields and imports against the installed OpenSCAD and closed forms.
+
+#[expect(dead_code, reason = "texts need no random solids")]
+mod support;
+
+use std::f64::consts::PI;
+use std::path::Path;
+use std::process::Command;
+
+use solidray::facets::{boundary, faceted};
+use solidray::measure::{self, Sampling};
+use solidray::read::{self, Curves, Format, ReadOptions};
+use solidray::{Scene, Solid};
+
+/// Texts whose solids OpenSCAD makes with the same volume.
+const TEXTS: &[&str] = &[
+    // Offsets: round, mitred, chamfered, out and in, of corners and of what has holes.
+    "offset(r = 1, $fn = 0, $fa = 12, $fs = 2) { square([10, 5]); }",
+    "offset(r = 3, $fn = 0, $fa = 12, $fs = 0.2) { square([10, 5]); }",
+    "offset(r = 3, $fn = 6) { square([10, 5]); }",
+    "offset(r = 3, $fn = 25) { polygon([[0, 0], [10, 1], [3, 9]]); }",
+    "offset(r = -1, $fn = 32) { difference() { square(10); square(5); } }",
+    "offset(r = -1, $fn = 0) { difference() { square(20); circle(r = 4, $fn = 7); } }",
+    "offset(r = 2) { circle(r = 4, $fn = 40); }",
+    "offset(delta = 1, chamfer = false) { polygon([[0, 0], [10, 1], [3, 9]]); }",
+    "offset(delta = 2, chamfer = true) { polygon([[0, 0], [10, 1], [3, 9]]); }",
+    "offset(delta = -0.5, chamfer = true) { difference() { square(10); square(5); } }",
+    "offset(delta = -2) { square([3, 9]); multmatrix([[1, 0, 0, 1]]) square(8); }",
+    "offset(delta = 1) { polygon([[0, 0], [10, 0], [10, 10], [5, 1]]); }",
+    "offset(r = 1) { offset(delta = -1) { square([10, 5]); } }",
+    "offset(r = 3, $fn = 3) { square([10, 5]); }",
+    "offset(r = 2.7, $fn = 10) { square([10, 5]); }",
+    "offset() { square(3); }",
+    // Texts: letters, alignment (which a cut shows), spacing, direction.
+    r#"text("Hag8&e", size = 10, font = "", $fn = 0, $fa = 12, $fs = 2);"#,
+    r#"text("AVo€", size = 4, font = "Liberation Sans:style=Bold Italic", $fn = 64);"#,
+    r#"text("o", font = "Liberation Serif", $fn = 5);"#,
+    r#"intersection() { text("ab", direction = "btt", valign = "center", halign = "center"); square([3, 30]); }"#,
+];
+
+/// Texts that are solids by themselves.
+const SOLIDS: &[&str] = &[
+    r#"linear_extrude(height = 2) { import("a.dxf"); }"#,
+    r#"linear_extrude(height = 2) { import("a.dxf", layer = "B", scale = 3, origin = [4, 5], $fn = 9); }"#,
+    r#"surface("uneven.dat");"#,
+    r#"surface("deep.dat", center = true);"#,
+    r#"surface("grey.png", center = true);"#,
+    r#"surface("grey.png", invert = true);"#,
+    r#"surface("colour.png");"#,
+    "hull() { cube(1); multmatrix([[1, 0, 0, 3]]) sphere(r = 1, $fn = 9); }",
+    "linear_extrude(height = 2) { minkowski() { square(3); circle(r = 1, $fn = 12); } }",
+];
+
+/// The files that the texts name; the pictures have three by two pixels.
+const FILES: &[(&str, &[u8])] = &[
+    ("uneven.dat", b"10 12 8\n5 6 7 20\n"),
+    ("deep.dat", b"# heights\n10 12 8 9\n\n5 6 7 20\n3 -2 4 4\n"),
+    // An arc with a line, a circle in a polyline with a bulge, and a loose line.
+    (
+        "a.dxf",
+        b"0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n10\n0\n20\n0\n11\n10\n21\n0\n\
+          0\nARC\n8\nA\n10\n5\n20\n0\n40\n5\n50\n0\n51\n180\n0\nLWPOLYLINE\n8\n\
+          B\n90\n4\n70\n1\n10\n0\n20\n-9\n10\n10\n20\n-9\n42\n1\n10\n10\n20\n\
+          -1\n10\n0\n20\n-1\n0\nCIRCLE\n8\nB\n10\n5\n20\n-5\n40\n2\n0\nLINE\n8\n\
+          0\n10\n20\n20\n0\n11\n30\n21\n5\n0\nENDSEC\n0\nEOF\n",
+    ),
+    (
+        "ellipse.dxf",
+        b"0\nSECTION\n2\nENTITIES\n0\nELLIPSE\n8\n0\n10\n0\n20\n0\n11\n10\n21\n\
+          0\n40\n0.5\n41\n0\n42\n6.283185307179586\n0\nENDSEC\n0\nEOF\n",
+    ),
+    (
+        "grey.png",
+        &[
+            137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 3, 0,
+            0, 0, 2, 8, 0, 0, 0, 0, 184, 31, 57, 198, 0, 0, 0, 16, 73, 68, 65, 84, 120,
+            156, 99, 224, 18, 249, 197, 144, 210, 196, 14, 0, 7, 223, 2, 6, 119, 232, 30,
+            68, 0, 0, 0, 0, 73, 69, 78, 68, 174, 66, 96, 130,
+        ],
+    ),
+    (
+        "colour.png",
+        &[
+            137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 3, 0,
+            0, 0, 2, 8, 2, 0, 0, 0, 18, 22, 241, 77, 0, 0, 0, 27, 73, 68, 65, 84, 120,
+            156, 99, 224, 18, 249, 149, 210, 196, 206, 0, 4, 255, 255, 255, 23, 177, 9,
+            248, 207, 192, 0, 0, 62, 221, 6, 162, 1, 140, 114, 62, 0, 0, 0, 0, 73, 69,
+            78, 68, 174, 66, 96, 130,
+        ],
+    ),
+];
+
+fn solid(text: &str, curves: Curves) -> Solid {
+    solid_in(text, curves, Path::new("a.csg"))
+}
+
+fn solid_in(text: &str, curves: Curves, file: &Path) -> Solid {
+    let options = ReadOptions { curves, ..ReadOptions::default() };
+    let model = read::bytes(text.as_bytes(), file, Format::Csg, &options);
+    model.unwrap_or_else(|error| panic!("{text}: {error}")).solid
+}
+
+fn thick(text: &str) -> String {
+    format!("linear_extrude(height = 2) {{ {text} }}")
+}
+
+/// The volume that the surface of a solid of meshes encloses, which Manifold finds.
+fn enclosed(solid: &Solid) -> f64 {
+    let faceted = faceted(solid, 3, 1 << 22).expect("it has facets");
+    assert_eq!(faceted.curves, 0);
+    let surface = boundary(&faceted, &solidray::unwatched).expect("a surface");
+    surface.map_or(0.0, |mesh| mesh.volume())
+}
+
+/// The installed OpenSCAD, unless there is none. Where it must be there, its absence is a failure.
+#[expect(clippy::print_stderr, reason = "a check left out is not left out in silence")]
+fn openscad() -> Option<&'static str> {
+    let found = Command::new("openscad").arg("--version").output().is_ok();
+    if !found {
+        let required = std::env::var_os("SOLIDRAY_REQUIRE_OPENSCAD").is_some();
+        assert!(
+            !required,
+            "OpenSCAD is required here, but there is no `openscad` on PATH"
+        );
+        eprintln!("openscad is not installed: nothing is compared with it");
+    }
+    found.then_some("openscad")
+}
+
+/// The volume that OpenSCAD gives a file.
+fn volume_by(program: &str, file: &Path) -> f64 {
+    let mesh = file.with_extension("off");
+    let done =
+        Command::new(program).arg("-o").args([&mesh, file]).output().expect("it starts");
+    let said = String::from_utf8_lossy(&done.stderr);
+    if said.contains("object is empty") {
+        return 0.0;
+    }
+    assert!(done.status.success(), "{}: {said}", file.display());
+    let found = read::file(&mesh, &ReadOptions::default()).expect("a closed mesh");
+    enclosed(&found.solid)
+}
+
+#[test]
+fn faceted_texts_have_the_volume_of_openscads_polyhedra() {
+    let Some(program) = openscad() else { return };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("a.csg");
+    let mut wrong = Vec::new();
+    for (name, bytes) in FILES {
+        std::fs::write(folder.path().join(name), bytes).expect("it is written");
+    }
+    let thick = TEXTS.iter().map(|text| thick(text));
+    for text in thick.chain(SOLIDS.iter().map(|&text| text.to_owned())) {
+        std::fs::write(&file, &text).expect("it is written");
+        let expected = volume_by(program, &file);
+        let volume = enclosed(&solid_in(&text, Curves::Faceted, &file));
+        let is_near = (volume - expected).abs() <= 3e-4 * expected;
+        if !is_near {
+            wrong.push(format!("{text}: {volume}, not {expected}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// That a plane shape has an area.
+#[track_caller]
+fn assert_area(text: &str, area: f64) {
+    let solid = solid(&thick(text), Curves::Auto);
+    let sampling = Sampling { rel_tol: 3e-4, ..Sampling::default() };
+    let volume = measure::volume(&support::scene(&solid), &sampling);
+    assert!(volume.target_met);
+    let is_near = (volume.value - 2.0 * area).abs() <= 1.91 * volume.half_width();
+    assert!(is_near, "{text}: {volume:?}, exact {}", 2.0 * area);
+}
+
+#[test]
+fn offsets_have_true_arcs() {
+    let square = "square([10, 5]);";
+    assert_area(&format!("offset(r = 2) {square}"), 50.0 + 60.0 + 4.0 * PI);
+    assert_area(&format!("offset(r = -2) {square}"), 6.0);
+    assert_area("offset(r = 2) circle(r = 3);", 25.0 * PI);
+    assert_area("offset(r = -2) multmatrix([[1, 0, 0, 5]]) circle(r = 3);", PI);
+    assert_area(
+        "offset(r = -1) difference() { square(10); square(5); }",
+        64.0 - 25.0 + 1.0 - PI / 4.0,
+    );
+    assert_area(&format!("offset(delta = 2) {square}"), 14.0 * 9.0);
+    assert_area(
+        &format!("offset(delta = 2, chamfer = true) {square}"),
+        14.0 * 9.0 - 4.0 * (8.0_f64.sqrt() - 2.0).powi(2),
+    );
+    for nothing in ["offset(r = -3) square(5);", "offset(r = -3) circle(r = 3);"] {
+        let scene = Scene::compile(&solid(&thick(nothing), Curves::Auto)).expect(nothing);
+        assert!(scene.bounds().is_empty(), "{nothing}");
+    }
+}
+
+#[test]
+fn surfaces_have_the_volume_under_their_cells() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(folder.path().join("a.dat"), "1 2 3\n4 5 6").expect("it is written");
+    let file = folder.path().join("a.csg");
+    let volume = enclosed(&solid_in("surface(\"a.dat\");", Curves::Auto, &file));
+    assert!((volume - 7.0).abs() < 1e-12, "{volume}");
+}
+
+#[test]
+fn true_text_has_the_area_of_its_curves() {
+    let Some(program) = openscad() else { return };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("a.csg");
+    let text = thick("text(\"Sol8\", $fn = 2000);");
+    std::fs::write(&file, &text).expect("it is written");
+    let expected = volume_by(program, &file);
+    let volume = enclosed(&solid(&text, Curves::Exact));
+    assert!((volume / expected - 1.0).abs() < 3e-4, "{volume}, not {expected}");
+}
