@@ -551,6 +551,11 @@ fn files_and_imports_are_found() {
         error.to_string(),
         format!("{start}/a.csg:2:1: import: {start}/bad.off:2:5: {expected}")
     );
+    // What is not there is left out, as long as something is left.
+    let model = read("a.csg", "cube(1);\nimport(\"none.off\");").unwrap();
+    let message = model.warnings[0].to_string();
+    assert!(message.starts_with("2:1: import: "), "{message}");
+    assert!(message.ends_with("; it is left out, as by OpenSCAD"), "{message}");
     let error = read("a.csg", "import(\"none.off\");").unwrap_err().to_string();
     let expected =
         format!("{start}/a.csg:1:1: import: {start}/none.off: cannot be read: ");

@@ -40,8 +40,11 @@ pub(super) struct Reading<'a> {
     pub(super) fonts: Option<fontdb::Database>,
     /// How much may still be imported.
     pub(super) budget: Budget,
-    /// Why the first of those polyhedra was left out that bound no solid.
+    /// Why the first was left out of those polyhedra that bound no solid, and of files that are
+    /// not there.
     left_out: Option<Located>,
+    /// Whether only the hull of what is being made matters.
+    pub(super) is_hulled: bool,
 }
 
 impl Reading<'_> {
@@ -55,7 +58,7 @@ impl Reading<'_> {
         Ok(())
     }
 
-    /// Leaves out a polyhedron that bounds no solid, with a warning.
+    /// Leaves out a polyhedron that bounds no solid, or a file that is not there, with a warning.
     pub(super) fn leave_out(&mut self, error: Located, at: Place) {
         self.warn(at, format!("{}; it is left out, as by OpenSCAD", error.kind));
         self.left_out.get_or_insert(error);
@@ -72,6 +75,8 @@ struct Frame {
     node: Node,
     statement: usize,
     children: Vec<Shape>,
+    /// Whether only the hull of its children matters.
+    hulls: bool,
 }
 
 /// The model that a document describes.
@@ -94,6 +99,7 @@ pub(super) fn model(
         fonts: None,
         budget,
         left_out: None,
+        is_hulled: false,
     };
     let (next, end) = content(document);
     let shapes = shapes(document, next, end, &mut reading)?;
@@ -148,6 +154,7 @@ fn shapes(
             let parameters = frame.node.parameters;
             let call = Call { document, statement, parameters };
             call.warn_of_unknown(reading);
+            reading.is_hulled = open.last().is_some_and(|frame| frame.hulls);
             let shape = match made_elsewhere(document, &frame, reading)? {
                 Some(shape) => shape,
                 None => match (frame.node.make)(&call, frame.children, reading) {
@@ -181,7 +188,14 @@ fn shapes(
             let kind = ReadErrorKind::Unsupported(quoted(statement.name.as_bytes()));
             return Err(Located::at(statement.place, kind));
         };
-        open.push(Frame { node, statement: next, children: Vec::new() });
+        let hulls = match statement.name {
+            "hull" => true,
+            "group" | "union" | "multmatrix" | "color" | "render" => {
+                open.last().is_some_and(|frame| frame.hulls)
+            }
+            _ => false,
+        };
+        open.push(Frame { node, statement: next, children: Vec::new(), hulls });
         next += 1;
     }
 }

@@ -18,8 +18,8 @@ use super::node::Shape;
 use crate::mesh::{Mesh, round};
 use crate::solid::{Solid, Tag};
 
-/// A mesh from a file, looked for in the folder of the `.csg`. A file that is missing is
-/// an error here, though OpenSCAD goes on without it.
+/// A mesh or drawing from a file, looked for in the folder of the `.csg`. One that is not there is
+/// left out with a warning, as by OpenSCAD; it is an error if nothing else is left.
 pub(super) fn import(
     call: &Call<'_>,
     _: Vec<Shape>,
@@ -27,25 +27,44 @@ pub(super) fn import(
 ) -> Result<Shape, Located> {
     let Some(name) = call.text("file")? else { return Ok(Shape::Empty) };
     let path = reading.folder.join(&name);
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("dxf")) {
-        return drawing(&path, call, reading);
+    match imported(&path, call, reading) {
+        Err(error) if name.is_empty() || is_missing(&error) => {
+            reading.leave_out(error, call.place());
+            Ok(Shape::Empty)
+        }
+        shape => shape,
     }
-    let format = Format::of(&path);
+}
+
+fn is_missing(error: &Located) -> bool {
+    let ReadErrorKind::Import(error) = &error.kind else { return false };
+    matches!(&error.kind, ReadErrorKind::Io(e) if e.kind() == std::io::ErrorKind::NotFound)
+}
+
+fn imported(
+    path: &Path,
+    call: &Call<'_>,
+    reading: &mut Reading<'_>,
+) -> Result<Shape, Located> {
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("dxf")) {
+        return drawing(path, call, reading);
+    }
+    let format = Format::of(path);
     let Some(format @ (Format::Obj | Format::Stl | Format::Off)) = format else {
-        return Err(left(&path, call));
+        return Err(left(path, call));
     };
-    let mesh = match reading.imports.get(&path) {
+    let mesh = match reading.imports.get(path) {
         Some(mesh) => mesh.clone(),
         None => {
             let (mesh, turned) =
-                load(&path, format, &mut reading.budget).map_err(|error| {
+                load(path, format, &mut reading.budget).map_err(|error| {
                     Located::at(call.place(), ReadErrorKind::Import(Box::new(error)))
                 })?;
             if turned {
                 reading.model.counts.turned += 1;
                 reading.warn(call.place(), format!("{}: {TURNED}", path.display()));
             }
-            reading.imports.insert(path, mesh.clone());
+            reading.imports.insert(path.to_owned(), mesh.clone());
             mesh
         }
     };

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 
-use super::super::error::Located;
+use super::super::error::{Located, ReadErrorKind};
 use super::super::faces::{Faces, TURNED};
 use super::arguments::Call;
 use super::evaluate::Reading;
 use super::node::Shape;
+use crate::facets;
 use crate::solid::Solid;
 
 /// Points that are nearer to each other are one to OpenSCAD.
@@ -29,13 +30,16 @@ pub(super) fn polyhedron(
             })?,
         );
     }
-    let mut dropped = 0;
+    let (mut dropped, mut corners) = (0, Vec::new());
     let parameter = if call.value("faces").is_some() { "faces" } else { "triangles" };
     for value in call.vector(parameter)?.unwrap_or_default() {
         let (mut face, others) = chosen(call, parameter, value, read.points.len())?;
         dropped += others;
         // OpenSCAD's faces are clockwise, ours counter-clockwise.
         face.reverse();
+        if reading.is_hulled {
+            corners.extend(face.iter().map(|&i| read.points[i as usize]));
+        }
         if face.len() > 2 {
             read.push(face);
         }
@@ -47,6 +51,14 @@ pub(super) fn polyhedron(
     let place = call.place();
     let built = match read.build_on_grid(Some(GRID)) {
         Ok(built) => built,
+        // Corners have a hull whether they are those of a solid or not.
+        Err(_) if reading.is_hulled => {
+            let hull = facets::hull(&corners);
+            let hull = hull.map_err(|e| Located::at(place, ReadErrorKind::Facets(e)))?;
+            return Ok(hull.map_or(Shape::Empty, |mesh| {
+                Shape::Solid(Solid::mesh(mesh).placed(place))
+            }));
+        }
         Err(error) => {
             reading.leave_out(Located::at(place, error.kind), place);
             return Ok(Shape::Empty);
