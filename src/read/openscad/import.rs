@@ -36,7 +36,8 @@ pub(super) fn import(
     }
 }
 
-fn is_missing(error: &Located) -> bool {
+/// Whether a file is not there.
+pub(super) fn is_missing(error: &Located) -> bool {
     let ReadErrorKind::Import(error) = &error.kind else { return false };
     matches!(&error.kind, ReadErrorKind::Io(e) if e.kind() == std::io::ErrorKind::NotFound)
 }

@@ -9,6 +9,7 @@ use super::super::faces::{Faces, Points};
 use super::super::words::Words;
 use super::arguments::Call;
 use super::evaluate::Reading;
+use super::import::is_missing;
 use super::node::Shape;
 use crate::solid::Solid;
 
@@ -35,7 +36,14 @@ pub(super) fn surface(
         let error = ReadErrorKind::Import(Box::new(error.named(&path)));
         Located::at(call.place(), error)
     };
-    let bytes = reading.budget.load(&path).map_err(|e| import(Located::nowhere(e)))?;
+    let loaded = reading.budget.load(&path).map_err(|e| import(Located::nowhere(e)));
+    let bytes = match loaded {
+        Err(error) if name.is_empty() || is_missing(&error) => {
+            reading.leave_out(error, call.place());
+            return Ok(Shape::Empty);
+        }
+        loaded => loaded?,
+    };
     let mut count = |columns: usize, rows: usize| {
         let cells = (columns as u64).saturating_mul(rows as u64);
         reading.count_facets(cells.saturating_mul(4), call.place())
