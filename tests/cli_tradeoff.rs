@@ -44,7 +44,9 @@ fn errors_fall_with_what_they_cost() {
         trials.iter().map(|trial| number(&trial["error"])).collect()
     };
     assert!(number(&of("lattice")["order"]) < -0.7, "{}", of("lattice"));
-    assert!(number(&of("points")["order"]) > -0.8, "{}", of("points"));
+    // Points have order −½; only the first budgets are sure to get all their runs.
+    let points = number(&of("points")["order"]);
+    assert!((-0.8..-0.2).contains(&points), "{}", of("points"));
     // What n segments miss of a circle falls like 1/n², and tubes are made of circles.
     let facets = errors("facets (Manifold)");
     assert!(facets.len() >= 3, "{facets:?}");
