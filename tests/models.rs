@@ -1,11 +1,12 @@
 //! The models of this repository against closed forms, Manifold and OpenSCAD.
 
+#[path = "support/openscad.rs"]
+mod openscad;
 #[expect(dead_code, reason = "models need no random solids")]
 mod support;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use solidray::measure::{self, Estimate, Sampling};
 use solidray::read::{self, Curves, ReadOptions};
@@ -101,21 +102,10 @@ fn faceted_models_have_the_volume_of_openscads_polyhedra() {
     }
 }
 
-/// The volume that the surface of a solid of meshes encloses, which Manifold finds.
-fn enclosed(solid: &Solid) -> f64 {
-    use solidray::facets::{boundary, faceted};
-    let faceted = faceted(solid, 3, 1 << 22).expect("it has facets");
-    assert_eq!(faceted.curves, 0);
-    boundary(&faceted, &solidray::unwatched)
-        .expect("a surface")
-        .expect("it is not empty")
-        .volume()
-}
-
 #[test]
 fn facets_given_to_manifold_have_the_recorded_volume() {
     for Reference { name, manifold: recorded, .. } in references() {
-        let volume = enclosed(&solid(&name, Curves::Faceted));
+        let volume = openscad::enclosed(&solid(&name, Curves::Faceted));
         assert!(
             (volume / recorded - 1.0).abs() < 1e-9,
             "{name}: {volume}, not {recorded}"
@@ -123,53 +113,37 @@ fn facets_given_to_manifold_have_the_recorded_volume() {
     }
 }
 
-/// The installed OpenSCAD, unless there is none; then the recorded values have to do, which
-/// the tests above compare with. Where it must be there, its absence is a failure.
-#[expect(clippy::print_stderr, reason = "a check left out is not left out in silence")]
-fn openscad() -> Option<&'static str> {
-    let found = Command::new("openscad").arg("--version").output().is_ok();
-    if !found {
-        let required = std::env::var_os("SOLIDRAY_REQUIRE_OPENSCAD").is_some();
-        assert!(
-            !required,
-            "OpenSCAD is required here, but there is no `openscad` on PATH"
-        );
-        eprintln!("openscad is not installed: its recorded volumes are used instead");
-    }
-    found.then_some("openscad")
+/// Without it the recorded values have to do, which the tests above compare with.
+fn is_installed() -> bool {
+    openscad::is_installed("its recorded volumes are used instead")
 }
 
 #[test]
 fn openscad_makes_the_same_volume_now_as_when_it_was_recorded() {
-    let Some(program) = openscad() else { return };
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    for Reference { name, openscad, .. } in references() {
+    if !is_installed() {
+        return;
+    }
+    for Reference { name, openscad: recorded, .. } in references() {
         // Those that take its exact arithmetic a few seconds at most.
         if !["ball", "classic", "flange", "bracket", "pencils", "dovetail"]
             .contains(&&*name)
         {
             continue;
         }
-        let mesh = folder.path().join(format!("{name}.off"));
-        let done = Command::new(program)
-            .arg("-o")
-            .args([&mesh, &models().join(format!("{name}.csg"))])
-            .output()
-            .expect("it starts");
-        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-        let found = read::file(&mesh, &ReadOptions::default()).expect("a closed mesh");
-        let volume = enclosed(&found.solid);
+        let volume = openscad::volume_of(&models().join(format!("{name}.csg")));
         // Its files have six digits.
         assert!(
-            (volume / openscad - 1.0).abs() < 1e-5,
-            "{name}: {volume}, not {openscad}"
+            (volume / recorded - 1.0).abs() < 1e-5,
+            "{name}: {volume}, not {recorded}"
         );
     }
 }
 
 #[test]
 fn scad_files_give_what_their_csg_files_give() {
-    let Some(_) = openscad() else { return };
+    if !is_installed() {
+        return;
+    }
     for name in ["classic", "die", "gear", "asteroid"] {
         let scad = models().join(format!("{name}.scad"));
         let found = read::file(&scad, &ReadOptions::default());

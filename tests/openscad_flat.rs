@@ -1,13 +1,13 @@
 //! Plane shapes, height fields and imports against the installed OpenSCAD and closed forms.
 
+#[path = "support/openscad.rs"]
+mod openscad;
 #[expect(dead_code, reason = "texts need no random solids")]
 mod support;
 
 use std::f64::consts::PI;
 use std::path::Path;
-use std::process::Command;
 
-use solidray::facets::{boundary, faceted};
 use solidray::measure::{self, Sampling};
 use solidray::read::{self, Curves, Format, ReadOptions};
 use solidray::{Scene, Solid};
@@ -104,46 +104,11 @@ fn thick(text: &str) -> String {
     format!("linear_extrude(height = 2) {{ {text} }}")
 }
 
-/// The volume that the surface of a solid of meshes encloses, which Manifold finds.
-fn enclosed(solid: &Solid) -> f64 {
-    let faceted = faceted(solid, 3, 1 << 22).expect("it has facets");
-    assert_eq!(faceted.curves, 0);
-    let surface = boundary(&faceted, &solidray::unwatched).expect("a surface");
-    surface.map_or(0.0, |mesh| mesh.volume())
-}
-
-/// The installed OpenSCAD, unless there is none. Where it must be there, its absence is a failure.
-#[expect(clippy::print_stderr, reason = "a check left out is not left out in silence")]
-fn openscad() -> Option<&'static str> {
-    let found = Command::new("openscad").arg("--version").output().is_ok();
-    if !found {
-        let required = std::env::var_os("SOLIDRAY_REQUIRE_OPENSCAD").is_some();
-        assert!(
-            !required,
-            "OpenSCAD is required here, but there is no `openscad` on PATH"
-        );
-        eprintln!("openscad is not installed: nothing is compared with it");
-    }
-    found.then_some("openscad")
-}
-
-/// The volume that OpenSCAD gives a file.
-fn volume_by(program: &str, file: &Path) -> f64 {
-    let mesh = file.with_extension("off");
-    let done =
-        Command::new(program).arg("-o").args([&mesh, file]).output().expect("it starts");
-    let said = String::from_utf8_lossy(&done.stderr);
-    if said.contains("object is empty") {
-        return 0.0;
-    }
-    assert!(done.status.success(), "{}: {said}", file.display());
-    let found = read::file(&mesh, &ReadOptions::default()).expect("a closed mesh");
-    enclosed(&found.solid)
-}
-
 #[test]
 fn faceted_texts_have_the_volume_of_openscads_polyhedra() {
-    let Some(program) = openscad() else { return };
+    if !openscad::is_installed("nothing is compared with it") {
+        return;
+    }
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("a.csg");
     let mut wrong = Vec::new();
@@ -153,8 +118,8 @@ fn faceted_texts_have_the_volume_of_openscads_polyhedra() {
     let thick = TEXTS.iter().map(|text| thick(text));
     for text in thick.chain(SOLIDS.iter().map(|&text| text.to_owned())) {
         std::fs::write(&file, &text).expect("it is written");
-        let expected = volume_by(program, &file);
-        let volume = enclosed(&solid_in(&text, Curves::Faceted, &file));
+        let expected = openscad::volume_of(&file);
+        let volume = openscad::enclosed(&solid_in(&text, Curves::Faceted, &file));
         let is_near = (volume - expected).abs() <= 3e-4 * expected;
         if !is_near {
             wrong.push(format!("{text}: {volume}, not {expected}"));
@@ -201,18 +166,21 @@ fn surfaces_have_the_volume_under_their_cells() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     std::fs::write(folder.path().join("a.dat"), "1 2 3\n4 5 6").expect("it is written");
     let file = folder.path().join("a.csg");
-    let volume = enclosed(&solid_in("surface(\"a.dat\");", Curves::Auto, &file));
+    let volume =
+        openscad::enclosed(&solid_in("surface(\"a.dat\");", Curves::Auto, &file));
     assert!((volume - 7.0).abs() < 1e-12, "{volume}");
 }
 
 #[test]
 fn true_text_has_the_area_of_its_curves() {
-    let Some(program) = openscad() else { return };
+    if !openscad::is_installed("nothing is compared with it") {
+        return;
+    }
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("a.csg");
     let text = thick("text(\"Sol8\", $fn = 2000);");
     std::fs::write(&file, &text).expect("it is written");
-    let expected = volume_by(program, &file);
-    let volume = enclosed(&solid(&text, Curves::Exact));
+    let expected = openscad::volume_of(&file);
+    let volume = openscad::enclosed(&solid(&text, Curves::Exact));
     assert!((volume / expected - 1.0).abs() < 3e-4, "{volume}, not {expected}");
 }

@@ -22,7 +22,7 @@ pub fn boundary(
     faceted: &Faceted,
     watch: Watch<'_>,
 ) -> Result<Option<Mesh>, FacetsError> {
-    // Operands of nodes that are not finished, and how many of them the next node takes.
+    // The operands of nodes that are not finished.
     let mut values: Vec<Manifold> = Vec::new();
     let mut open = vec![(&faceted.solid, false)];
     while let Some((solid, seen)) = open.pop() {

@@ -31,7 +31,7 @@ pub enum FacetsError {
     /// A leaf that OpenSCAD does not have, so that there are no polyhedra for it.
     #[error("there are no facets for a {0}")]
     NoFacets(&'static str),
-    /// Curves that few segments make of: they are not polygons.
+    /// So few segments make no polygon.
     #[error("a curve has at least 3 segments, not {0}")]
     TooFewSegments(u32),
     /// There would be too many of them.

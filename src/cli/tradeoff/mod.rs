@@ -33,7 +33,7 @@ use volumes::Volumes;
 ///
 /// Every method of `volume` is run with larger and larger budgets and compared with the best
 /// volume there is: by formula, by `adaptive`, or by a far larger lattice. OpenSCAD's facets, 8 to
-/// 512 segments a turn, are made and combined by Manifold, which has an error of its own: theirs.
+/// 512 segments a turn, are combined by Manifold, and their volume is compared in the same way.
 /// Pictures are compared with finer ones, by how far their outlines are off. All times are those of one
 /// thread.
 #[derive(Args, Debug)]
