@@ -35,12 +35,19 @@ const TEXTS: &[&str] = &[
     r#"text("Hag8&e", size = 10, font = "", $fn = 0, $fa = 12, $fs = 2);"#,
     r#"text("AVo€", size = 4, font = "Liberation Sans:style=Bold Italic", $fn = 64);"#,
     r#"text("o", font = "Liberation Serif", $fn = 5);"#,
-    r#"intersection() { text("ab", direction = "btt", valign = "center", halign = "center"); square([3, 30]); }"#,
+    r#"intersection() { text("Agb", halign = "center", valign = "center"); square([7, 3]); }"#,
+    r#"intersection() { text("Hxl", size = 7, halign = "right", valign = "top"); multmatrix([[1, 0, 0, -9], [0, 1, 0, -5]]) square([8, 3]); }"#,
+    r#"intersection() { text("gyp", spacing = 1.5, valign = "bottom"); square([25, 5]); }"#,
+    r#"intersection() { text("abc", direction = "rtl", font = "Liberation Mono"); square([11, 30]); }"#,
+    r#"intersection() { text("Hig", direction = "ttb", spacing = 0.8); multmatrix([[1, 0, 0, 0], [0, 1, 0, -25]]) square([3, 24]); }"#,
+    r#"intersection() { text("ab", direction = "btt", valign = "center", halign = "center"); multmatrix([[1, 0, 0, -9], [0, 1, 0, -9]]) square([8, 15]); }"#,
+    r#"intersection() { text("WAo", direction = "ttb", valign = "top", halign = "right", font = "Liberation Serif:style=Bold"); multmatrix([[1, 0, 0, -9], [0, 1, 0, 9]]) square([8, 15]); }"#,
 ];
 
 /// Texts that are solids by themselves.
 const SOLIDS: &[&str] = &[
     r#"linear_extrude(height = 2) { import("a.dxf"); }"#,
+    r#"linear_extrude(height = 2) { import("ellipse.dxf"); }"#,
     r#"linear_extrude(height = 2) { import("a.dxf", layer = "B", scale = 3, origin = [4, 5], $fn = 9); }"#,
     r#"surface("uneven.dat");"#,
     r#"surface("deep.dat", center = true);"#,

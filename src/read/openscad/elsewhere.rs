@@ -33,12 +33,6 @@ pub(super) fn is_known(name: &str) -> bool {
     NODES.contains(&name)
 }
 
-/// Whether OpenSCAD makes a node better than this program does: it places the letters of texts that
-/// are not flush left on the baseline by rules that are not known here.
-pub(super) fn is_better(name: &str) -> bool {
-    name == "text"
-}
-
 /// What OpenSCAD makes of a statement; `what` is why it is asked.
 pub(super) fn evaluated(
     document: &Document<'_>,

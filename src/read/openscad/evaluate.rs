@@ -155,14 +155,11 @@ fn shapes(
             let call = Call { document, statement, parameters };
             call.warn_of_unknown(reading);
             reading.is_hulled = open.last().is_some_and(|frame| frame.hulls);
-            let shape = match made_elsewhere(document, &frame, reading)? {
-                Some(shape) => shape,
-                None => match (frame.node.make)(&call, frame.children, reading) {
-                    Err(Located { kind: ReadErrorKind::Unsupported(what), .. }) => {
-                        elsewhere::evaluated(document, frame.statement, what, reading)?
-                    }
-                    made => made?,
-                },
+            let shape = match (frame.node.make)(&call, frame.children, reading) {
+                Err(Located { kind: ReadErrorKind::Unsupported(what), .. }) => {
+                    elsewhere::evaluated(document, frame.statement, what, reading)?
+                }
+                made => made?,
             };
             let outer = open.last_mut().map_or(&mut outermost, |f| &mut f.children);
             outer.push(shape);
@@ -197,22 +194,5 @@ fn shapes(
         };
         open.push(Frame { node, statement: next, children: Vec::new(), hulls });
         next += 1;
-    }
-}
-
-/// What OpenSCAD makes of a node that it makes better, if it is installed.
-fn made_elsewhere(
-    document: &Document<'_>,
-    frame: &Frame,
-    reading: &mut Reading<'_>,
-) -> Result<Option<Shape>, Located> {
-    let name = document.statements[frame.statement].name;
-    if !elsewhere::is_better(name) {
-        return Ok(None);
-    }
-    let what = quoted(name.as_bytes());
-    match elsewhere::evaluated(document, frame.statement, what, reading) {
-        Err(Located { kind: ReadErrorKind::OpenscadMissingFor { .. }, .. }) => Ok(None),
-        made => made.map(Some),
     }
 }
