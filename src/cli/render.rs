@@ -50,6 +50,10 @@ pub(super) struct Render {
     /// How many rays go through each pixel, spread evenly, for smooth edges
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Looks")]
     samples: u32,
+    /// OpenSCAD's colours: Cornfield, Metallic, Sunset, Starnight, BeforeDawn, Nature, "Daylight Gem",
+    /// "Nocturnal Gem", DeepOcean, Solarized, Tomorrow, "Tomorrow Night", ClearSky or Monotone
+    #[arg(long, value_name = "NAME", value_parser = scheme, default_value = "Cornfield", help_heading = "Looks")]
+    colorscheme: Scheme,
     #[command(flatten)]
     reading: Reading,
 }
@@ -108,7 +112,7 @@ impl Render {
                 LookArg::Depth => Look::Depth,
                 LookArg::Leaf => Look::Leaf,
             },
-            scheme: Scheme::CORNFIELD,
+            scheme: self.colorscheme,
             samples: self.samples,
         };
         let rays = style.rays(self.imgsize);
@@ -192,6 +196,13 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 fn camera(text: &str) -> Result<Camera, String> {
     let numbers = numbers::list(text).map_err(|error| error.to_string())?;
     Camera::from_numbers(&numbers).map_err(|error| error.to_string())
+}
+
+fn scheme(name: &str) -> Result<Scheme, String> {
+    Scheme::named(name).ok_or_else(|| {
+        let names = Scheme::ALL.map(|(name, _)| name).join(", ");
+        format!("`{name}` is none of {names}")
+    })
 }
 
 fn projection(text: &str) -> Result<Projection, String> {

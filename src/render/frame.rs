@@ -106,6 +106,15 @@ impl Frame {
         [column + self.offset[0], row + self.offset[1]]
     }
 
+    /// How far down in the view a row's rays are: 0 at its upper, 1 at its lower edge.
+    #[cfg(feature = "image")]
+    pub(super) fn down(&self, y: u32) -> f32 {
+        let [_, height] = self.view.size();
+        #[expect(clippy::cast_possible_truncation, reason = "a fraction")]
+        let down = (self.in_view(0, y)[1] / f64::from(height)) as f32;
+        down
+    }
+
     /// Where the ray through pixel (x, y) first crosses the boundary of the solid; none
     /// where it misses, and outside of the frame. A crossing with [`Sense::Exit`] is seen
     /// from inside.

@@ -55,10 +55,10 @@ impl Look {
         }
     }
 
-    /// The light of a pixel in which nothing is seen.
-    pub(super) fn background(self, scheme: &Scheme) -> Vec3 {
+    /// The light of a pixel in which nothing is seen, so far down in the picture: 0–1.
+    pub(super) fn background(self, scheme: &Scheme, down: f32) -> Vec3 {
         match self {
-            Self::Shaded | Self::Leaf => linear(scheme.background),
+            Self::Shaded | Self::Leaf => scheme.ground(down),
             Self::Normal | Self::Depth => Vec3::ZERO,
         }
     }

@@ -7,8 +7,8 @@ use crate::color::Color;
 /// The colours of a picture, as OpenSCAD's colour schemes give them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scheme {
-    /// Where nothing is hit.
-    pub background: Color,
+    /// Where nothing is hit: at the upper and at the lower edge of the picture.
+    pub background: [Color; 2],
     /// Surfaces without a colour.
     pub face: Color,
     /// Surfaces without a colour that a subtracted solid left behind.
@@ -17,11 +17,47 @@ pub struct Scheme {
 
 impl Scheme {
     /// OpenSCAD's default: yellow solids with green cuts on a pale ground.
-    pub const CORNFIELD: Self = Self {
-        background: rgb8(0xff, 0xff, 0xe5),
-        face: rgb8(0xf9, 0xd7, 0x2c),
-        cut: rgb8(0x9d, 0xcb, 0x51),
-    };
+    pub const CORNFIELD: Self = Self::ALL[0].1;
+
+    /// OpenSCAD's schemes by their names, in its order (its folder `color-schemes/render`).
+    #[rustfmt::skip]
+    pub const ALL: [(&'static str, Self); 14] = [
+        ("Cornfield", Self::new([0xffffe5, 0xffffe5], 0xf9d72c, 0x9dcb51)),
+        ("Metallic", Self::new([0xaaaaff, 0xaaaaff], 0xddddff, 0xdd22dd)),
+        ("Sunset", Self::new([0xaa4444, 0xaa4444], 0xffaaaa, 0x882233)),
+        ("Starnight", Self::new([0x000000, 0x000000], 0xffffe0, 0x00ffff)),
+        ("BeforeDawn", Self::new([0x333333, 0x333333], 0xcccccc, 0x5563dd)),
+        ("Nature", Self::new([0xfafafa, 0xfafafa], 0x16a085, 0xdbf4da)),
+        ("Daylight Gem", Self::new([0xf0f0f0, 0xf0f0f0], 0x02daf7, 0x014da1)),
+        ("Nocturnal Gem", Self::new([0x0c0c0c, 0x0c0c0c], 0x02daf7, 0x014da1)),
+        ("DeepOcean", Self::new([0x333333, 0x333333], 0xeeeeee, 0x0babc8)),
+        ("Solarized", Self::new([0xfdf6e3, 0xfdf6e3], 0xb58800, 0x882233)),
+        ("Tomorrow", Self::new([0xf8f8f8, 0xf8f8f8], 0x4271ae, 0xf5871f)),
+        ("Tomorrow Night", Self::new([0x1d1f21, 0x1d1f21], 0x81a2be, 0xde935f)),
+        ("ClearSky", Self::new([0x87ceeb, 0xc9e9f6], 0xf9d72c, 0x9dcb51)),
+        ("Monotone", Self::new([0xffffe5, 0xffffe5], 0xf9d72c, 0xf9d72c)),
+    ];
+
+    /// The scheme that OpenSCAD knows by a name; capitals, spaces and dashes do not matter.
+    pub fn named(name: &str) -> Option<Self> {
+        let plain = |name: &str| -> String {
+            let letters = name.chars().filter(|c| c.is_ascii_alphanumeric());
+            letters.map(|c| c.to_ascii_lowercase()).collect()
+        };
+        let name = plain(name);
+        Self::ALL.into_iter().find(|(known, _)| plain(known) == name).map(|found| found.1)
+    }
+
+    const fn new(background: [u32; 2], face: u32, cut: u32) -> Self {
+        let [upper, lower] = background;
+        Self { background: [hex(upper), hex(lower)], face: hex(face), cut: hex(cut) }
+    }
+
+    /// The light of the ground of a picture, 0 at its upper and 1 at its lower edge.
+    pub(super) fn ground(&self, down: f32) -> Vec3 {
+        let [upper, lower] = self.background.map(linear);
+        upper.lerp(lower, down)
+    }
 }
 
 impl Default for Scheme {
@@ -30,7 +66,9 @@ impl Default for Scheme {
     }
 }
 
-const fn rgb8(r: u8, g: u8, b: u8) -> Color {
+/// A colour from its 24 bits.
+const fn hex(rgb: u32) -> Color {
+    let [_, r, g, b] = rgb.to_be_bytes();
     Color::rgb(r as f32 / 255.0, g as f32 / 255.0, b as f32 / 255.0)
 }
 
@@ -89,9 +127,20 @@ mod tests {
     #[test]
     fn every_byte_survives_linear_light() {
         for byte in 0..=u8::MAX {
-            let color = rgb8(byte, 255 - byte, byte / 2);
-            assert_eq!(srgb8(linear(color)), [byte, 255 - byte, byte / 2]);
+            let bytes = [byte, 255 - byte, byte / 2];
+            let color = hex(u32::from_be_bytes([0, bytes[0], bytes[1], bytes[2]]));
+            assert_eq!(srgb8(linear(color)), bytes);
         }
+    }
+
+    #[test]
+    fn schemes_have_names() {
+        for (name, scheme) in Scheme::ALL {
+            assert_eq!(Scheme::named(name), Some(scheme));
+        }
+        assert_eq!(Scheme::named("daylight-gem"), Scheme::named("Daylight Gem"));
+        assert_eq!(Scheme::named(""), None);
+        assert_eq!(srgb8(linear(Scheme::CORNFIELD.face)), [0xf9, 0xd7, 0x2c]);
     }
 
     #[test]

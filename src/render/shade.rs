@@ -57,7 +57,7 @@ impl Shader<'_> {
     fn pixel(&self, frame: &Frame, x: u32, y: u32) -> Vec3 {
         match frame.hit(x, y) {
             Some(hit) => self.look.paint(&self.seen(frame, x, y, &hit)),
-            None => self.look.background(self.scheme),
+            None => self.look.background(self.scheme, frame.down(y)),
         }
     }
 
