@@ -105,7 +105,8 @@ mod pictures {
 
     use image::RgbImage;
     use solidray::Color;
-    use solidray::render::{Look, Style, picture, shade};
+    use solidray::render::{Light, Look, Scheme, Style, picture, shade};
+    use solidray::{Mesh, Op};
 
     use super::*;
 
@@ -182,10 +183,133 @@ mod pictures {
     }
 
     #[test]
+    fn schemes_have_their_ground_and_what_has_no_color_theirs() {
+        let style = |name| {
+            let scheme = Scheme::named(name).expect(name);
+            Style { scheme, ..Style::default() }
+        };
+        let sky = painted(&plate(), &style("clear sky"));
+        assert_eq!(sky.get_pixel(0, 0).0, [0x88, 0xce, 0xeb]);
+        assert_eq!(sky.get_pixel(0, SIZE[1] - 1).0, [0xc8, 0xe9, 0xf6]);
+        let [r, g, b] = painted(&Solid::ball(1.0), &style("Nature")).get_pixel(32, 24).0;
+        assert!(g > r && b > r, "{r} {g} {b}");
+    }
+
+    /// The pixels that lines darken.
+    fn lines(solid: &Solid) -> Vec<[u32; 2]> {
+        let with = painted(solid, &Style { edges: true, ..Style::default() });
+        let without = painted(solid, &Style::default());
+        let pixels = with.enumerate_pixels().zip(without.pixels());
+        pixels.filter(|((_, _, a), b)| a != b).map(|((x, y, _), _)| [x, y]).collect()
+    }
+
+    #[test]
+    fn lines_are_where_something_ends_or_turns() {
+        // A ball has an outline and nothing in it.
+        let [ball, fine] = [lines(&Solid::ball(3.0)), lines(&faceted_ball())];
+        let is_outline = |[x, y]: &[u32; 2]| {
+            let (right, down) = (f64::from(*x) - 31.5, f64::from(*y) - 23.5);
+            (12.0..15.0).contains(&right.hypot(down))
+        };
+        assert!(ball.len() > 60 && ball.iter().all(is_outline), "{ball:?}");
+        assert!(fine.iter().all(is_outline), "triangles are not drawn: {fine:?}");
+        // A box has three edges in front as well, and what lies flush on it has none.
+        let half = |side: f64| {
+            Solid::cuboid(dvec3(3.0, 6.0, 6.0)).translated(dvec3(side, 0.0, 0.0))
+        };
+        let whole = lines(&Solid::cuboid(dvec3(6.0, 6.0, 6.0)));
+        assert_eq!(whole, lines(&(half(1.5) + half(-1.5))));
+        // Seen from above it has four edges, and a step of a pixel on it another four.
+        let above = |solid: &Solid| {
+            let scene = compile(solid);
+            let camera =
+                Camera { rotation_deg: DVec3::ZERO, ..Camera::framing(&scene.bounds()) }
+                    .with_projection(Projection::Orthographic);
+            let style = |edges| Style { edges, ..Style::default() };
+            let [a, b] =
+                [false, true].map(|e| picture(&scene, &camera, SIZE, &style(e), &|_| ()));
+            differing(&a, &b, 0)
+        };
+        let flat = above(&Solid::cuboid(dvec3(6.0, 6.0, 6.0)));
+        let small = Solid::cuboid(dvec3(3.0, 3.0, 3.0)).translated(dvec3(0.0, 0.0, 3.0));
+        let step = above(&(Solid::cuboid(dvec3(6.0, 6.0, 6.0)) + small));
+        assert!(step > flat + 20, "{step} and {flat} pixels");
+    }
+
+    /// A ball of 40 by 20 facets, whose edges turn by 9°.
+    fn faceted_ball() -> Solid {
+        let at = |i: usize, j: usize| {
+            let (polar, around) = (j as f64 / 20.0, i as f64 / 20.0);
+            let [(s, z), (y, x)] =
+                [polar, around].map(|a| (std::f64::consts::PI * a).sin_cos());
+            3.0 * dvec3(s * x, s * y, z)
+        };
+        let mut points: Vec<DVec3> =
+            (1..20).flat_map(|j| (0..40).map(move |i| at(i, j))).collect();
+        points.extend([dvec3(0.0, 0.0, 3.0), dvec3(0.0, 0.0, -3.0)]);
+        let mut faces = Vec::new();
+        for i in 0..40_u32 {
+            let next = (i + 1) % 40;
+            for j in 0..18 {
+                let [a, b, c, d] = [i, next, i + 40, next + 40].map(|k| k + 40 * j);
+                faces.extend([[a, c, d], [a, d, b]]);
+            }
+            faces.extend([[760, i, next], [761, 720 + next, 720 + i]]);
+        }
+        Solid::mesh(Mesh::new(points, faces).expect("it is closed"))
+    }
+
+    #[test]
+    fn soft_light_falls_on_what_is_open() {
+        let soft = Style { light: Light::Soft { rays: 12 }, ..Style::default() };
+        // Nothing stands in the light of what is convex.
+        for convex in
+            [Solid::ball(3.0), Solid::cuboid(dvec3(1.0, 2.0, 3.0)), faceted_ball()]
+        {
+            let [a, b] = [painted(&convex, &soft), painted(&convex, &Style::default())];
+            assert_eq!(differing(&a, &b, 0), 0);
+        }
+        // The floor of a shaft is darker the deeper it is.
+        let brightness = |depth: f64| {
+            let shaft = Solid::cuboid(dvec3(2.0, 2.0, 2.0 * depth))
+                .translated(dvec3(0.0, 0.0, 6.0));
+            let scene = compile(&(Solid::cuboid(DVec3::splat(12.0)) - shaft));
+            let camera =
+                Camera { rotation_deg: DVec3::ZERO, ..Camera::framing(&scene.bounds()) };
+            let image = picture(&scene, &camera, SIZE, &soft, &|_| ());
+            u32::from(image.get_pixel(32, 24).0[1])
+        };
+        let [shallow, deep, deeper] = [0.1, 0.5, 8.0].map(brightness);
+        assert!(shallow > deep + 5 && deep > deeper + 20, "{shallow} {deep} {deeper}");
+    }
+
+    #[test]
+    fn bands_leave_no_seam() {
+        // Three bands: the lines of what crosses their borders go on.
+        let balls =
+            (0..30).map(|i| Solid::ball(1.0).translated(dvec3(0.0, 0.0, f64::from(i))));
+        let scene = compile(&Solid::boolean(Op::Union, balls));
+        let camera = Camera::framing(&scene.bounds());
+        let style = Style { edges: true, ..Style::default() };
+        let size = [1 << 15, 130];
+        let seen = trace(&scene, &camera.view(size, &scene.bounds()), [0.5; 2], &|_| ());
+        let image = picture(&scene, &camera, size, &style, &|_| ());
+        // Inside of the silhouette no row is darker than its neighbours as a whole.
+        let dark = |y: u32| {
+            let is_dark =
+                |x: &u32| seen.hit(*x, y).is_some() && image.get_pixel(*x, y).0[0] < 100;
+            (0..size[0]).filter(is_dark).count()
+        };
+        for y in 62..68 {
+            assert!(dark(y) < 30, "row {y}: {} pixels", dark(y));
+        }
+    }
+
+    #[test]
     fn all_rays_are_reported() {
         let scene = compile(&plate());
-        for look in [Look::Shaded, Look::Depth] {
-            let style = Style { look, samples: 3, ..Style::default() };
+        for (look, edges) in [(Look::Shaded, false), (Look::Depth, true)] {
+            let style = Style { look, edges, samples: 3, ..Style::default() };
             let rays = AtomicU64::new(0);
             let count = |n| {
                 rays.fetch_add(n, Ordering::Relaxed);
@@ -198,7 +322,8 @@ mod pictures {
     #[cfg(feature = "parallel")]
     #[test]
     fn threads_change_nothing() {
-        let style = Style { samples: 4, ..Style::default() };
+        let light = Light::Soft { rays: 5 };
+        let style = Style { samples: 4, light, edges: true, ..Style::default() };
         let on = |threads| {
             rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, bail};
+use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use image::ImageFormat;
 use serde::Serialize;
 use solidray::Aabb;
-use solidray::render::{self, Camera, Look, Projection, Scheme, Style};
+use solidray::render::{self, Camera, Light, Look, Projection, Scheme, Style};
 
 use super::input::Reading;
 use super::meter::Meter;
@@ -50,10 +51,18 @@ pub(super) struct Render {
     /// How many rays go through each pixel, spread evenly, for smooth edges
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Looks")]
     samples: u32,
-    /// OpenSCAD's colours: Cornfield, Metallic, Sunset, Starnight, BeforeDawn, Nature, "Daylight Gem",
-    /// "Nocturnal Gem", DeepOcean, Solarized, Tomorrow, "Tomorrow Night", ClearSky or Monotone
-    #[arg(long, value_name = "NAME", value_parser = scheme, default_value = "Cornfield", help_heading = "Looks")]
-    colorscheme: Scheme,
+    /// Where light comes from
+    #[arg(long, value_enum, default_value_t = LightArg::Plain, help_heading = "Looks")]
+    light: LightArg,
+    /// How many rays soft light takes for each ray from the eye
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Looks")]
+    light_rays: u32,
+    /// Draw dark lines along outlines, steps and creases
+    #[arg(long, help_heading = "Looks")]
+    edges: bool,
+    /// The colours of what has none, as OpenSCAD's schemes have them
+    #[arg(long, value_name = "SCHEME", value_parser = PossibleValuesParser::new(Scheme::ALL.map(|(name, _)| name)), ignore_case = true, default_value = Scheme::ALL[0].0, help_heading = "Looks")]
+    colorscheme: String,
     #[command(flatten)]
     reading: Reading,
 }
@@ -68,6 +77,14 @@ enum LookArg {
     Depth,
     /// a colour for each leaf
     Leaf,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum LightArg {
+    /// lamps that nothing stands in front of
+    Plain,
+    /// a lamp as wide as the sky: corners and holes are darker, and it takes longer
+    Soft,
 }
 
 #[derive(Serialize)]
@@ -112,8 +129,13 @@ impl Render {
                 LookArg::Depth => Look::Depth,
                 LookArg::Leaf => Look::Leaf,
             },
-            scheme: self.colorscheme,
+            scheme: Scheme::named(&self.colorscheme).unwrap_or_default(),
             samples: self.samples,
+            light: match self.light {
+                LightArg::Plain => Light::Plain,
+                LightArg::Soft => Light::Soft { rays: self.light_rays },
+            },
+            edges: self.edges,
         };
         let rays = style.rays(self.imgsize);
         let start = Instant::now();
@@ -196,13 +218,6 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 fn camera(text: &str) -> Result<Camera, String> {
     let numbers = numbers::list(text).map_err(|error| error.to_string())?;
     Camera::from_numbers(&numbers).map_err(|error| error.to_string())
-}
-
-fn scheme(name: &str) -> Result<Scheme, String> {
-    Scheme::named(name).ok_or_else(|| {
-        let names = Scheme::ALL.map(|(name, _)| name).join(", ");
-        format!("`{name}` is none of {names}")
-    })
 }
 
 fn projection(text: &str) -> Result<Projection, String> {

@@ -89,6 +89,12 @@ impl Frame {
         [self.view.size()[0], self.rows.end - self.rows.start]
     }
 
+    /// The rows of the view that the frame holds.
+    #[cfg(feature = "image")]
+    pub(super) fn rows(&self) -> Range<u32> {
+        self.rows.clone()
+    }
+
     /// The view that the frame is a picture of.
     pub fn view(&self) -> &View {
         &self.view

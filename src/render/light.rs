@@ -17,9 +17,30 @@ pub(super) struct Reflection {
 }
 
 /// Towards the key light, in eye coordinates: x right, y up, z out of the picture.
-const KEY: Vec3 = Vec3::new(-0.485, 0.566, 0.667);
+pub(super) const KEY: Vec3 = Vec3::new(-0.485, 0.566, 0.667);
 /// Towards the fill light.
 const FILL: Vec3 = Vec3::new(0.873, -0.218, 0.436);
+
+/// How the light that falls on surfaces is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Light {
+    /// From lamps that nothing stands in front of: no rays beside those of the picture.
+    #[default]
+    Plain,
+    /// From a lamp as wide as the sky, to which so many rays go from each surface that is seen, for
+    /// each of a pixel's rays: holes are darker, and solids stand on their shadows.
+    Soft {
+        /// How many.
+        rays: u32,
+    },
+}
+
+/// The brightness of the wide lamp of soft light in a direction whose cosine to the key light's is
+/// given.
+pub(super) fn lamp(cosine: f32) -> f32 {
+    let toward = cosine.max(0.0);
+    0.35 + 0.65 * toward * toward
+}
 
 /// The reflection of a surface with unit normal `n`, towards a viewer in the unit
 /// direction `v`, both in eye coordinates.

@@ -39,11 +39,18 @@ pub(super) struct Seen {
     pub(super) eye_normal: Vec3,
     /// The unit vector to the viewer, in eye coordinates.
     pub(super) to_viewer: Vec3,
+    /// How much of the light that could fall on it does: 0–1.
+    pub(super) openness: f32,
 }
 
 impl Look {
     /// All looks.
     pub const ALL: [Self; 4] = [Self::Shaded, Self::Normal, Self::Depth, Self::Leaf];
+
+    /// Whether surfaces are shown in some light.
+    pub(super) fn is_lit(self) -> bool {
+        matches!(self, Self::Shaded | Self::Leaf)
+    }
 
     /// The light, linear in sRGB's primaries, of a pixel in which a surface is seen.
     pub(super) fn paint(self, seen: &Seen) -> Vec3 {
@@ -66,7 +73,7 @@ impl Look {
 
 fn lit(color: Vec3, seen: &Seen) -> Vec3 {
     let light = reflection(seen.eye_normal, seen.to_viewer);
-    light.diffuse * color + light.specular
+    seen.openness * (light.diffuse * color + light.specular)
 }
 
 /// A colour for each leaf. Hues follow each other by the golden ratio of a turn, so that

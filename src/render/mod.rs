@@ -18,6 +18,8 @@ mod camera;
 mod chunks;
 #[cfg(feature = "image")]
 mod coverage;
+#[cfg(feature = "image")]
+mod edges;
 mod frame;
 #[cfg(feature = "image")]
 mod light;
@@ -29,12 +31,16 @@ mod picture;
 mod scheme;
 #[cfg(feature = "image")]
 mod shade;
+#[cfg(feature = "image")]
+mod sky;
 mod view;
 
 pub use camera::{Camera, CameraError, Projection};
 #[cfg(feature = "image")]
 pub use coverage::coverage;
 pub use frame::{Frame, trace};
+#[cfg(feature = "image")]
+pub use light::Light;
 #[cfg(feature = "image")]
 pub use look::Look;
 #[cfg(feature = "image")]

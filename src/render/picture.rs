@@ -1,12 +1,14 @@
 //! Pictures with smooth edges: the average of frames whose rays are spread over each
 //! pixel.
 
+use std::ops::Range;
+
 use glam::Vec3;
 use image::RgbImage;
 
 use super::frame::{TILE, trace_rows};
 use super::shade::{Shader, write};
-use super::{Camera, Look, Scheme, View};
+use super::{Camera, Light, Look, Scheme, View};
 use crate::progress::Progress;
 use crate::scene::Scene;
 
@@ -19,21 +21,42 @@ pub struct Style {
     pub scheme: Scheme,
     /// How many rays go through each pixel; 0 counts as 1.
     pub samples: u32,
+    /// Where the light comes from, in looks that have any.
+    pub light: Light,
+    /// Whether dark lines are drawn along outlines, steps and creases.
+    pub edges: bool,
 }
 
 impl Default for Style {
     /// Shaded, in OpenSCAD's colours, one ray through the centre of each pixel.
     fn default() -> Self {
-        Self { look: Look::Shaded, scheme: Scheme::CORNFIELD, samples: 1 }
+        Self {
+            look: Look::Shaded,
+            scheme: Scheme::CORNFIELD,
+            samples: 1,
+            light: Light::Plain,
+            edges: false,
+        }
     }
 }
 
 impl Style {
-    /// How many rays a picture takes, for those who watch its progress.
-    pub fn rays(&self, size: [u32; 2]) -> u64 {
-        let pixels = u64::from(size[0]) * u64::from(size[1]);
-        let survey = u64::from(self.needs_survey());
-        pixels.saturating_mul(u64::from(self.samples.max(1)) + survey)
+    /// How many rays from the eye a picture takes, for those who watch its progress.
+    pub fn rays(&self, size @ [width, height]: [u32; 2]) -> u64 {
+        let rows: u64 =
+            bands(size).map(|rows| self.traced(&rows, height).len() as u64).sum();
+        let samples = u64::from(self.samples.max(1));
+        let survey = if self.needs_survey() { u64::from(height) } else { 0 };
+        u64::from(width)
+            .saturating_mul(rows.saturating_mul(samples).saturating_add(survey))
+    }
+
+    /// The rows that are traced for a band of rows: edges depend on the rows beside them.
+    fn traced(&self, rows: &Range<u32>, height: u32) -> Range<u32> {
+        match self.edges {
+            true => rows.start.saturating_sub(1)..rows.end.saturating_add(1).min(height),
+            false => rows.clone(),
+        }
     }
 
     /// Whether the range of depths is to be known before anything is painted.
@@ -64,7 +87,8 @@ pub fn picture(
 ) -> RgbImage {
     let view = camera.view(size, &scene.bounds());
     let depths = if style.needs_survey() { survey(scene, &view, progress) } else { None };
-    let shader = Shader { scene, look: style.look, scheme: &style.scheme, depths };
+    let Style { look, ref scheme, light, edges, .. } = *style;
+    let shader = Shader { scene, look, scheme, depths, edges, light };
     let offsets = spread(style.samples.max(1));
     let factor = 1.0 / style.samples.max(1) as f32;
 
@@ -74,9 +98,10 @@ pub fn picture(
         let pixels = size[0] as usize * rows.len();
         let start = 3 * size[0] as usize * rows.start as usize;
         let mut light = vec![Vec3::ZERO; pixels];
-        for &offset in &offsets {
-            let frame = trace_rows(scene, &view, rows.clone(), offset, progress);
-            shader.add(&frame, &mut light);
+        for (&offset, sample) in offsets.iter().zip(0..) {
+            let traced = style.traced(&rows, size[1]);
+            let frame = trace_rows(scene, &view, traced, offset, progress);
+            shader.add(&frame, rows.clone(), sample, &mut light);
         }
         write(&light, factor, &mut bytes[start..start + 3 * pixels]);
     }
@@ -91,7 +116,7 @@ fn survey(scene: &Scene, view: &View, progress: Progress<'_>) -> Option<[f64; 2]
 }
 
 /// Ranges of rows, whole tiles high, that make up a picture.
-pub(super) fn bands(size: [u32; 2]) -> impl Iterator<Item = std::ops::Range<u32>> {
+pub(super) fn bands(size: [u32; 2]) -> impl Iterator<Item = Range<u32>> {
     let [width, height] = size;
     let tiles = (BAND_PIXELS / TILE / width.max(1)).max(1);
     let step = tiles * TILE;

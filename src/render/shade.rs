@@ -1,19 +1,26 @@
 //! From what a camera sees to a picture of it.
 
+use std::ops::Range;
+
 use glam::{DVec3, Vec3};
 use image::RgbImage;
 
+use super::edges::is_edge;
 use super::look::Seen;
 use super::scheme::srgb8;
-use super::{Frame, Look, Scheme, chunks};
+use super::sky::openness;
+use super::{Frame, Light, Look, Scheme, chunks};
 use crate::ray::{Crossing, Sense};
-use crate::scene::Scene;
+use crate::scene::{Scene, Tracer};
 
 /// Paints a frame of a scene: a pure function of its arguments.
 pub fn shade(scene: &Scene, frame: &Frame, look: Look, scheme: &Scheme) -> RgbImage {
     let [width, height] = frame.size();
     let mut light = vec![Vec3::ZERO; width as usize * height as usize];
-    Shader { scene, look, scheme, depths: frame.depths() }.add(frame, &mut light);
+    let depths = frame.depths();
+    let shader =
+        Shader { scene, look, scheme, depths, edges: false, light: Light::Plain };
+    shader.add(frame, frame.rows(), 0, &mut light);
     let mut image = RgbImage::new(width, height);
     write(&light, 1.0, &mut image);
     image
@@ -34,30 +41,58 @@ pub(super) struct Shader<'a> {
     pub(super) scheme: &'a Scheme,
     /// The depths that are white and dark grey in [`Look::Depth`].
     pub(super) depths: Option<[f64; 2]>,
+    /// Whether lines are drawn where surfaces end or turn.
+    pub(super) edges: bool,
+    pub(super) light: Light,
 }
 
+/// How much of its light is left to a pixel on an edge.
+const ON_EDGES: f32 = 0.12;
+
 impl Shader<'_> {
-    /// Adds the light of each of a frame's pixels, row by row.
-    pub(super) fn add(&self, frame: &Frame, light: &mut [Vec3]) {
+    /// Adds the light of the pixels in some of a frame's rows, row by row; `sample` is which of a
+    /// pixel's rays they are.
+    pub(super) fn add(
+        &self,
+        frame: &Frame,
+        rows: Range<u32>,
+        sample: u32,
+        light: &mut [Vec3],
+    ) {
         let width = frame.size()[0] as usize;
+        let above = rows.start - frame.rows().start;
         chunks::for_each(
             light,
             width.max(1),
-            || (),
-            |(), y, row| {
+            || self.scene.tracer(),
+            |tracer, y, row| {
                 for (x, pixel) in row.iter_mut().enumerate() {
                     #[expect(clippy::cast_possible_truncation, reason = "sizes are u32")]
-                    let (x, y) = (x as u32, y as u32);
-                    *pixel += self.pixel(frame, x, y);
+                    let (x, y) = (x as u32, y as u32 + above);
+                    *pixel += self.pixel(frame, [x, y], sample, tracer);
                 }
             },
         );
     }
 
-    fn pixel(&self, frame: &Frame, x: u32, y: u32) -> Vec3 {
-        match frame.hit(x, y) {
-            Some(hit) => self.look.paint(&self.seen(frame, x, y, &hit)),
-            None => self.look.background(self.scheme, frame.down(y)),
+    fn pixel(
+        &self,
+        frame: &Frame,
+        at @ [x, y]: [u32; 2],
+        sample: u32,
+        tracer: &mut Tracer<'_>,
+    ) -> Vec3 {
+        let Some(hit) = frame.hit(x, y) else {
+            return self.look.background(self.scheme, frame.down(y));
+        };
+        let mut seen = self.seen(frame, x, y, &hit);
+        if let (Light::Soft { rays }, true) = (self.light, self.look.is_lit()) {
+            seen.openness = openness(tracer, frame, at, &seen, rays, sample);
+        }
+        let light = self.look.paint(&seen);
+        match self.edges && is_edge(self.scene, frame, at) {
+            true => ON_EDGES * light,
+            false => light,
         }
     }
 
@@ -80,6 +115,7 @@ impl Shader<'_> {
             normal,
             eye_normal: in_eye_coordinates(towards_viewer),
             to_viewer: in_eye_coordinates(-ray.dir).normalize_or(Vec3::Z),
+            openness: 1.0,
         }
     }
 

@@ -76,6 +76,12 @@ impl View {
         self.fan.ray(right, up)
     }
 
+    /// How wide a pixel is at a depth.
+    #[cfg(feature = "image")]
+    pub(super) fn footprint(&self, t: f64) -> f64 {
+        (self.fan.origin.right + t * self.fan.dir.right).length()
+    }
+
     /// All rays of the picture.
     pub(super) fn fan(&self) -> &Fan {
         &self.fan
