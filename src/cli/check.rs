@@ -165,6 +165,7 @@ fn is_about_the_model(error: &anyhow::Error) -> bool {
             ReadErrorKind::Io(_)
                 | ReadErrorKind::UnknownFormat
                 | ReadErrorKind::OpenscadMissing { .. }
+                | ReadErrorKind::OpenscadSlow { .. }
         ),
     }
 }

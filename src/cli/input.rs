@@ -2,7 +2,7 @@
 
 use std::io::{self, BufRead, Read};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
@@ -25,6 +25,9 @@ pub(super) struct Reading {
     /// The OpenSCAD program that converts .scad files [default: openscad on PATH]
     #[arg(long, value_name = "PROGRAM", help_heading = "Reading")]
     openscad: Option<PathBuf>,
+    /// Stop that program after this many seconds for a file, or for a node that is left to it
+    #[arg(long, value_name = "SECONDS", default_value = "300", value_parser = seconds, help_heading = "Reading")]
+    openscad_limit: Duration,
     /// Set a variable of a .scad file, as OpenSCAD's own -D does; may be given several times
     #[arg(short = 'D', value_name = "NAME=VALUE", help_heading = "Reading")]
     define: Vec<String>,
@@ -116,6 +119,12 @@ fn length(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A time above zero.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = super::sampling::positive(text)?;
+    Duration::try_from_secs_f64(seconds).map_err(|error| format!("`{text}`: {error}"))
+}
+
 /// A compiled model, and how long that took.
 pub(super) struct Loaded {
     pub(super) scene: Scene,
@@ -144,6 +153,7 @@ impl Reading {
                 CurvesArg::Faceted => Curves::Faceted,
             },
             openscad: self.openscad.clone(),
+            openscad_limit: self.openscad_limit,
             format: self.format.map(Format::from),
             max_bytes: self.max_bytes,
             max_facets: self.max_facets,

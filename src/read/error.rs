@@ -125,6 +125,15 @@ pub enum ReadErrorKind {
         /// The program that was looked for.
         program: PathBuf,
     },
+    /// OpenSCAD took longer than
+    /// [`ReadOptions::openscad_limit`](super::ReadOptions::openscad_limit).
+    #[error(
+        "openscad was stopped after {seconds} seconds; --openscad-limit gives it more"
+    )]
+    OpenscadSlow {
+        /// The limit.
+        seconds: f64,
+    },
     /// OpenSCAD refused the file.
     #[error("openscad could not convert it ({status}): {stderr}")]
     OpenscadFailed {

@@ -21,6 +21,7 @@ mod off;
 mod openscad;
 mod options;
 mod outline;
+mod program;
 mod scad;
 mod stl;
 mod turn;

@@ -1,6 +1,7 @@
 //! What a caller can choose.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// How to read.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,6 +10,9 @@ pub struct ReadOptions {
     pub curves: Curves,
     /// The program that converts `.scad`; `openscad`, found on `PATH`, when there is none.
     pub openscad: Option<PathBuf>,
+    /// How long that program may take over a file, and over each node that is left to it, before
+    /// it is stopped.
+    pub openscad_limit: Duration,
     /// The format; when there is none, the file's name tells.
     pub format: Option<Format>,
     /// The most bytes that are read, of a file and all that it imports together. What is read
@@ -29,12 +33,13 @@ pub struct ReadOptions {
 }
 
 impl Default for ReadOptions {
-    /// `Curves::Auto`; 1 GiB, which as binary `.stl` is 21 million triangles; 30 million
+    /// `Curves::Auto`; five minutes for OpenSCAD; 1 GiB, which as binary `.stl` is 21 million triangles; 30 million
     /// facets; and facets within 0.005 of what they stand for.
     fn default() -> Self {
         Self {
             curves: Curves::default(),
             openscad: None,
+            openscad_limit: Duration::from_secs(300),
             format: None,
             max_bytes: 1 << 30,
             max_facets: 30_000_000,

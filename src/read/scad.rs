@@ -1,12 +1,13 @@
 //! `.scad` files, evaluated by the installed OpenSCAD.
 
 use std::ffi::OsStr;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::io;
+use std::path::Path;
+use std::process::Command;
 
 use super::error::{Located, ReadError, ReadErrorKind};
 use super::load::Budget;
+use super::program::{self, Fault};
 use super::{Model, ReadOptions, Warning, openscad};
 
 /// Reads a file. Places in messages are those of the `.csg` that OpenSCAD makes of it.
@@ -14,7 +15,7 @@ pub(super) fn file(path: &Path, options: &ReadOptions) -> Result<Model, ReadErro
     // OpenSCAD's own message about a missing file is easily overlooked.
     std::fs::metadata(path)
         .map_err(|e| Located::nowhere(ReadErrorKind::Io(e)).named(path))?;
-    converted(path, options, |command| command.arg(path).output())
+    converted(path, path.as_os_str(), options, |_| Ok(()))
 }
 
 /// Reads a text; what it includes or imports is looked for in the folder of the path.
@@ -23,50 +24,40 @@ pub(super) fn bytes(
     path: &Path,
     options: &ReadOptions,
 ) -> Result<Model, ReadError> {
-    converted(path, options, |command| {
+    converted(path, OsStr::new("-"), options, |command| {
         let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
-        command.arg("-").current_dir(folder.unwrap_or(Path::new(".")));
-        let mut child = command.stdin(Stdio::piped()).spawn()?;
-        // OpenSCAD reads everything before it says much, so no pipe can fill up.
-        let written = child.stdin.take().map_or(Ok(()), |mut pipe| pipe.write_all(text));
-        let output = child.wait_with_output()?;
-        // A program that ends without reading has said why; that matters more.
-        if output.status.success() { written.map(|()| output) } else { Ok(output) }
+        command.current_dir(folder.unwrap_or(Path::new(".")));
+        command.stdin(program::input(text)?);
+        Ok(())
     })
 }
 
 fn converted(
     path: &Path,
+    source: &OsStr,
     options: &ReadOptions,
-    run: impl FnOnce(&mut Command) -> io::Result<Output>,
+    more: impl FnOnce(&mut Command) -> io::Result<()>,
 ) -> Result<Model, ReadError> {
     let fault = |kind| Located::nowhere(kind).named(path);
     let folder = tempfile::tempdir().map_err(|e| fault(ReadErrorKind::Io(e)))?;
     let csg = folder.path().join("model.csg");
-    let program = options.openscad.clone().unwrap_or_else(|| PathBuf::from("openscad"));
-
-    let mut command = Command::new(&program);
-    // Without --render, $preview is true and many models leave parts out.
-    command.arg("--render=1").arg("-o").arg(&csg);
-    for definition in &options.definitions {
-        command.arg("-D").arg(definition);
-    }
-    if let Some((file, set)) = &options.parameters {
-        // The program may be run in another folder.
-        let file = std::path::absolute(file).map_err(|e| fault(ReadErrorKind::Io(e)))?;
-        command.arg("-p").arg(file).arg("-P").arg(set);
-    }
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let output = match run(&mut command) {
-        Ok(output) => output,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            return Err(fault(ReadErrorKind::OpenscadMissing { program }));
+    let done = program::run(&csg, source, options, |command| {
+        for definition in &options.definitions {
+            command.arg("-D").arg(definition);
         }
-        Err(error) => return Err(fault(ReadErrorKind::Io(error))),
-    };
-    let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
-    if !output.status.success() {
-        let status = output.status.to_string();
+        if let Some((file, set)) = &options.parameters {
+            // The program may be run in another folder.
+            command.arg("-p").arg(std::path::absolute(file)?).arg("-P").arg(set);
+        }
+        more(command)
+    });
+    let done = done.map_err(|error| match error {
+        Fault::Missing { program } => fault(ReadErrorKind::OpenscadMissing { program }),
+        Fault::Other(kind) => fault(kind),
+    })?;
+    let said = done.said;
+    if !done.status.success() {
+        let status = done.status.to_string();
         return Err(fault(ReadErrorKind::OpenscadFailed { status, stderr: said }));
     }
     let loaded = Budget::new(options.max_bytes).load(&csg);

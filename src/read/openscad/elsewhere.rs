@@ -4,26 +4,19 @@
 //! lines.
 
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io;
-use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus, Stdio};
-use std::time::{Duration, Instant};
+use std::path::Path;
 
 use glam::DVec2;
 
 use super::super::error::{Located, ReadErrorKind};
 use super::super::faces::Faces;
-use super::super::load::Budget;
 use super::super::off;
 use super::super::outline::Outline;
+use super::super::program::{self, Fault};
 use super::evaluate::Reading;
 use super::node::Shape;
 use super::value::{Document, Value};
 use crate::solid::{Solid, Tag};
-
-/// How long it may take over one node.
-const PATIENCE: Duration = Duration::from_secs(300);
 
 /// The nodes of OpenSCAD that are known, but not made here.
 const NODES: &[&str] = &["fill", "roof"];
@@ -45,9 +38,7 @@ pub(super) fn evaluated(
     let shape = match reading.elsewhere.get(&text) {
         Some(shape) => shape.clone(),
         None => {
-            let program = reading.options.openscad.clone();
-            let program = program.unwrap_or_else(|| PathBuf::from("openscad"));
-            let made = made(&text, &program, &what, &mut reading.budget);
+            let made = made(&text, &what, reading);
             let shape = made.map_err(|error| error.or_at(place))?;
             reading.elsewhere.insert(text, shape.clone());
             shape
@@ -64,12 +55,7 @@ pub(super) fn evaluated(
     })
 }
 
-fn made(
-    text: &str,
-    program: &Path,
-    what: &str,
-    budget: &mut Budget,
-) -> Result<Shape, Located> {
+fn made(text: &str, what: &str, reading: &mut Reading<'_>) -> Result<Shape, Located> {
     let fault = |kind| Located::nowhere(kind);
     let io = |error| fault(ReadErrorKind::Io(error));
     let folder = tempfile::tempdir().map_err(io)?;
@@ -77,31 +63,30 @@ fn made(
     std::fs::write(&source, text).map_err(io)?;
     let mut export = |name: &str| {
         let file = folder.path().join(name);
-        let (status, said) =
-            run(program, &source, &file, folder.path()).map_err(|error| {
-                if error.kind() == io::ErrorKind::NotFound {
-                    let (what, program) = (what.to_owned(), program.to_owned());
-                    fault(ReadErrorKind::OpenscadMissingFor { what, program })
-                } else {
-                    io(error)
-                }
-            })?;
+        let done = program::run(&file, source.as_os_str(), reading.options, |_| Ok(()));
+        let done = done.map_err(|error| match error {
+            Fault::Missing { program } => {
+                let what = what.to_owned();
+                fault(ReadErrorKind::OpenscadMissingFor { what, program })
+            }
+            Fault::Other(kind) => fault(kind),
+        })?;
+        let said = &done.said;
         let failed = |status: String| {
-            let stderr = said.trim().to_owned();
+            let stderr = said.clone();
             Err(fault(ReadErrorKind::OpenscadFailed { status, stderr }))
         };
-        match status {
+        match done.status {
             _ if said.contains("Can't open") => failed("a file is missing".to_owned()),
             _ if said.contains("Ignoring unknown module") => {
                 failed("it does not know the node".to_owned())
             }
-            Some(status) if status.success() => {
-                Ok(Some(budget.load(&file).map_err(fault)?))
+            status if status.success() => {
+                Ok(Some(reading.budget.load(&file).map_err(fault)?))
             }
-            Some(_) if said.contains("object is empty") => Ok(None),
-            Some(_) if said.contains("not a 3D object") => Ok(Some(Vec::new())),
-            Some(status) => failed(status.to_string()),
-            None => failed(format!("stopped after {} seconds", PATIENCE.as_secs())),
+            _ if said.contains("object is empty") => Ok(None),
+            _ if said.contains("not a 3D object") => Ok(Some(Vec::new())),
+            status => failed(status.to_string()),
         }
     };
     let Some(mesh) = export("node.off")? else { return Ok(Shape::Empty) };
@@ -120,38 +105,6 @@ fn made(
         }));
     }
     Ok(Shape::Flat(Outline::paths(paths)))
-}
-
-/// Runs the program; its end, if it ended in time, and what it said.
-fn run(
-    program: &Path,
-    source: &Path,
-    file: &Path,
-    folder: &Path,
-) -> io::Result<(Option<ExitStatus>, String)> {
-    let log = folder.join("said");
-    let mut child = Command::new(program)
-        .arg("--render=1")
-        .arg("-o")
-        .args([file, source])
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(File::create(&log)?)
-        .spawn()?;
-    let start = Instant::now();
-    let status = loop {
-        if let Some(status) = child.try_wait()? {
-            break Some(status);
-        }
-        if start.elapsed() > PATIENCE {
-            child.kill()?;
-            child.wait()?;
-            break None;
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    };
-    let said = Budget::new(1 << 20).load(&log).unwrap_or_default();
-    Ok((status, String::from_utf8_lossy(&said).into_owned()))
 }
 
 /// The closed lines of an `.svg` that OpenSCAD writes: all in one path of `M`, `L` and `z`, with
