@@ -49,6 +49,13 @@ fn nodes_have_the_volumes_of_closed_forms() {
         x * y * z + 2.0 * r * (x * y + y * z + z * x) + PI * r * r * (x + y + z) + ball(r)
     };
     let cases = [
+        // A quarter of a cylinder.
+        ("hull() rotate_extrude(angle = 90) square([5, 2]);", 12.5 * PI),
+        // A half of a ring, and a box on the other side.
+        (
+            "hull() { rotate_extrude(angle = 180, start = 90) M(3, 0, 0) square(2); M(0, -5, 0) cube([1, 10, 2]); }",
+            2.0 * (12.5 * PI + 10.0),
+        ),
         // A capsule, along an axis and across.
         (
             "hull() { sphere(r = 10); M(30, 0, 0) sphere(r = 10); }",

@@ -166,8 +166,8 @@ fn what_only_openscad_can_make_is_an_error_without_it() {
     for (text, expected) in [
         ("group() {\n\troof() { square(1); }\n}", "2:2: `roof`"),
         (
-            "linear_extrude(height = 1, v = [0, 1, 1]) square(1);",
-            "1:1: `linear_extrude` with `v`",
+            "linear_extrude(height = 1, file = \"a.dxf\");",
+            "1:1: `linear_extrude` with `file`",
         ),
     ] {
         let error =

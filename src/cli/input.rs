@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
-use solidray::read::{self, Curves, Format, Model, ReadOptions};
+use solidray::read::{self, Curves, Format, Model, ReadOptions, Rules};
 use solidray::{CompileError, CompileOptions, NearMisses, Scene, Solid};
 
 use super::Global;
@@ -19,6 +19,9 @@ pub(super) struct Reading {
     /// What curves of OpenSCAD models become
     #[arg(long, value_enum, default_value_t = CurvesArg::Auto, help_heading = "Reading")]
     curves: CurvesArg,
+    /// Whose rules hold where versions of OpenSCAD make different facets of the same text
+    #[arg(long, value_enum, default_value_t = RulesArg::V2021, value_name = "YEAR", help_heading = "Reading")]
+    openscad_rules: RulesArg,
     /// The format, where the file's name does not tell it
     #[arg(long, value_enum, help_heading = "Reading")]
     format: Option<FormatArg>,
@@ -91,6 +94,16 @@ enum CurvesArg {
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
+enum RulesArg {
+    /// OpenSCAD 2021.01
+    #[value(name = "2021")]
+    V2021,
+    /// OpenSCAD 2025.07: other starts of `rotate_extrude`, sections rounded up, split edges
+    #[value(name = "2025")]
+    V2025,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
 enum FormatArg {
     Csg,
     Scad,
@@ -151,6 +164,10 @@ impl Reading {
                 CurvesArg::Auto => Curves::Auto,
                 CurvesArg::Exact => Curves::Exact,
                 CurvesArg::Faceted => Curves::Faceted,
+            },
+            rules: match self.openscad_rules {
+                RulesArg::V2021 => Rules::V2021,
+                RulesArg::V2025 => Rules::V2025,
             },
             openscad: self.openscad.clone(),
             openscad_limit: self.openscad_limit,

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::{Ends, Mesh, MeshError, loft, polygon};
+use super::{Ends, Mesh, MeshError, Quad, loft, polygon};
 
 impl Mesh {
     /// A mesh of points and faces with three or more corners, each face the indices of
@@ -62,7 +62,8 @@ impl Mesh {
             map.translation.z = heights[i];
             map
         };
-        loft(paths, &[0, 1].map(section), Ends::Open)
+        // Its sides are plane.
+        loft(paths, &[0, 1].map(section), Ends::Open, Quad::short)
     }
 }
 

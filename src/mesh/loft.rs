@@ -13,11 +13,50 @@ pub(crate) enum Ends {
     Joined,
 }
 
+/// Four corners between two sections, which need not be planar.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Quad {
+    /// How many sections are before them.
+    pub(crate) before: usize,
+    /// Whether they are the wall of a hole.
+    pub(crate) is_hole: bool,
+    /// How long the diagonal is that goes forwards along the edge and to the next section.
+    pub(crate) forwards: f64,
+    /// How long the other one is.
+    pub(crate) backwards: f64,
+}
+
+/// One of the two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Diagonal {
+    Forwards,
+    Backwards,
+}
+
+impl Quad {
+    /// The shorter diagonal; none if they are as long, as OpenSCAD sees it.
+    pub(crate) fn shorter(&self) -> Option<Diagonal> {
+        /// Lengths that differ by less than this part are taken for equal.
+        const EQUAL: f64 = 1e-5;
+        let (more, both) =
+            (self.forwards - self.backwards, self.forwards + self.backwards);
+        if 2.0 * more.abs() <= EQUAL * both {
+            return None;
+        }
+        Some(if more > 0.0 { Diagonal::Backwards } else { Diagonal::Forwards })
+    }
+
+    /// A diagonal that is not the longer one.
+    pub(crate) fn short(&self) -> Diagonal {
+        self.shorter().unwrap_or(Diagonal::Forwards)
+    }
+}
+
 /// The body between sections, which are images of the even-odd fill of paths in the plane z = 0:
 /// the next one lies where z points to. A corner that stays where it is makes faces without area.
 ///
-/// The four corners between two sections need not be planar; they are divided along the shorter
-/// diagonal, as OpenSCAD does it.
+/// The four corners between two sections are divided along a diagonal of the caller's choice. Paths
+/// that run clockwise are those of holes.
 ///
 /// # Errors
 ///
@@ -28,6 +67,7 @@ pub(crate) fn loft(
     paths: &[Vec<DVec2>],
     sections: &[DAffine3],
     ends: Ends,
+    diagonal: impl Fn(&Quad) -> Diagonal,
 ) -> Result<Mesh, MeshError> {
     let fill::Fill { points: outline, triangles, boundary } = fill::even_odd(paths)?;
     let count = outline.len().saturating_mul(sections.len());
@@ -53,20 +93,41 @@ pub(crate) fn loft(
         Ends::Joined => sections.len(),
     };
     let at = |i: u32| points[i as usize];
-    for (_, start) in (0..joined).zip((0..).step_by(outline.len().max(1))) {
+    let in_holes = in_holes(paths, &outline);
+    for (before, start) in (0..joined).zip((0..).step_by(outline.len().max(1))) {
         for &[a, b] in &boundary {
+            let is_hole = in_holes[a as usize];
             let [a, b] = [a + start, b + start];
             let [c, d] =
                 [a, b].map(|i| if i + step < all { i + step } else { i + step - all });
-            /// Diagonals that differ by less than this part are taken for equal.
-            const EQUAL: f64 = 1e-5;
-            let [falling, rising] = [at(b).distance(at(c)), at(a).distance(at(d))];
-            if falling < rising * (1.0 - EQUAL) {
-                faces.extend([[a, b, c], [b, d, c]]);
-            } else {
-                faces.extend([[a, b, d], [a, d, c]]);
-            }
+            let quad = Quad {
+                before,
+                is_hole,
+                forwards: at(a).distance(at(d)),
+                backwards: at(b).distance(at(c)),
+            };
+            faces.extend(match diagonal(&quad) {
+                Diagonal::Forwards => [[a, b, d], [a, d, c]],
+                Diagonal::Backwards => [[a, b, c], [b, d, c]],
+            });
         }
     }
     Mesh::new(points, faces)
+}
+
+/// Of each point whether the first path through it is a hole; points where paths cross are not.
+fn in_holes(paths: &[Vec<DVec2>], points: &[DVec2]) -> Vec<bool> {
+    // Distinct points are in the order of the paths.
+    let mut found = Vec::with_capacity(points.len());
+    for path in paths {
+        let next = path.iter().cycle().skip(1);
+        let area: f64 = path.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum();
+        for point in path {
+            if points.get(found.len()) == Some(point) {
+                found.push(area < 0.0);
+            }
+        }
+    }
+    found.resize(points.len(), false);
+    found
 }

@@ -17,7 +17,7 @@ use glam::DVec3;
 use crate::aabb::Aabb;
 pub(crate) use build::triangulated;
 pub use error::{MeshError, OpenEdge};
-pub(crate) use loft::{Ends, loft};
+pub(crate) use loft::{Diagonal, Ends, Quad, loft};
 
 /// A closed, oriented triangle mesh.
 ///

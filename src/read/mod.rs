@@ -33,7 +33,7 @@ use crate::solid::Solid;
 
 pub use error::{ReadError, ReadErrorKind};
 pub use model::{Counts, Model, Warning};
-pub use options::{Curves, Format, ReadOptions};
+pub use options::{Curves, Format, ReadOptions, Rules};
 
 use error::Located;
 use faces::Faces;

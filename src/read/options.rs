@@ -8,6 +8,8 @@ use std::time::Duration;
 pub struct ReadOptions {
     /// What becomes of OpenSCAD's circles, cylinders and spheres.
     pub curves: Curves,
+    /// Whose rules hold where versions of OpenSCAD differ.
+    pub rules: Rules,
     /// The program that converts `.scad`; `openscad`, found on `PATH`, when there is none.
     pub openscad: Option<PathBuf>,
     /// How long that program may take over a file, and over each node that is left to it, before
@@ -33,11 +35,12 @@ pub struct ReadOptions {
 }
 
 impl Default for ReadOptions {
-    /// `Curves::Auto`; five minutes for OpenSCAD; 1 GiB, which as binary `.stl` is 21 million triangles; 30 million
+    /// `Curves::Auto`; the rules of 2021; five minutes for OpenSCAD; 1 GiB, which as binary `.stl` is 21 million triangles; 30 million
     /// facets; and facets within 0.005 of what they stand for.
     fn default() -> Self {
         Self {
             curves: Curves::default(),
+            rules: Rules::default(),
             openscad: None,
             openscad_limit: Duration::from_secs(300),
             format: None,
@@ -61,8 +64,23 @@ pub enum Curves {
     Auto,
     /// True curves throughout.
     Exact,
-    /// The vertices of OpenSCAD 2021.01 throughout.
+    /// OpenSCAD's vertices throughout.
     Faceted,
+}
+
+/// Which OpenSCAD's rules hold where its versions make different polyhedra of the same text. What
+/// either of them writes is read with both.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Rules {
+    /// OpenSCAD 2021.01: a full `rotate_extrude` starts on −x if it does not say where, and of
+    /// the sections of a part of a turn fractions are cut off, and with a twist uneven scale makes
+    /// no more slices.
+    #[default]
+    V2021,
+    /// OpenSCAD 2025.07: a `rotate_extrude` that says its angle starts on +x, the sections of
+    /// a part of a turn are rounded up, and a `linear_extrude` with twist or uneven scale splits the
+    /// edges of its outline.
+    V2025,
 }
 
 /// The formats that can be read.

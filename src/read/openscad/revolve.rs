@@ -1,7 +1,8 @@
 //! `rotate_extrude`.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
+use super::super::Rules;
 use super::super::error::{Located, ReadErrorKind};
 use super::super::outline::{self, Paths};
 use super::arguments::Call;
@@ -23,10 +24,17 @@ pub(super) fn rotate_extrude(
     children: Vec<Shape>,
     reading: &mut Reading<'_>,
 ) -> Result<Shape, Located> {
-    let angle = call.number("angle")?.unwrap_or(360.0);
+    let given = call.number("angle")?;
+    let angle = given.unwrap_or(360.0);
     // OpenSCAD takes all that is no part of a turn for a full one.
     let is_full = !(-360.0 < angle && angle < 360.0);
-    let start = call.number("start")?.unwrap_or(0.0);
+    let rules = reading.options.rules;
+    let starts_on_the_left = is_full && (rules == Rules::V2021 || given.is_none());
+    let start = match call.number("start")? {
+        Some(start) => start,
+        None if starts_on_the_left => 180.0,
+        None => 0.0,
+    };
     if call.value("file").is_some() {
         return Err(call.unsupported("`rotate_extrude` with `file`"));
     }
@@ -43,32 +51,39 @@ pub(super) fn rotate_extrude(
     if radius == 0.0 || angle == 0.0 {
         return Ok(Shape::Empty);
     }
+    let from = if is_turned { start + 180.0 } else { start };
+    let angles = [from + angle.min(0.0), from + angle.max(0.0)];
     let solid = match curve::segments(radius, call, reading)? {
         None if is_full => outline::revolved(&paths),
-        None => {
-            let wedge = outline::in_wedge(outline::revolved(&paths), angle.abs());
-            wedge.rotated(DVec3::Z, angle.min(0.0).to_radians())
-        }
+        None => outline::in_wedge(outline::revolved(&paths), angles),
         Some(segments) => {
             let corners: usize = paths.iter().map(Vec::len).sum();
             let triangles = 2 * corners as u64 * u64::from(segments);
             reading.count_facets(triangles, call.place())?;
             let mesh = if is_full {
-                outline::turned(&paths, [180.0, 540.0], segments, Ends::Joined)
+                outline::turned(&paths, [from, from + 360.0], segments, Ends::Joined)
             } else {
-                let [from, to] = [angle.min(0.0), angle.max(0.0)];
-                let sections = curve::part(segments, angle.abs() / 360.0);
-                outline::turned(&paths, [from, to], sections, Ends::Open)
+                let sections = sections(segments, angle, rules);
+                outline::turned(&paths, angles, sections, Ends::Open)
             };
             Solid::mesh(
                 mesh.map_err(|e| Located::at(call.place(), ReadErrorKind::Mesh(e)))?,
             )
         }
     };
-    let turned = if is_turned { start + 180.0 } else { start };
-    let solid =
-        if turned == 0.0 { solid } else { solid.rotated(DVec3::Z, turned.to_radians()) };
     Ok(Shape::Solid(solid.placed(call.place()).as_outline()))
+}
+
+/// How many sections a part of a turn has, if a whole one has so many segments.
+fn sections(segments: u32, angle: f64, rules: Rules) -> u32 {
+    let part = f64::from(segments) * angle.abs() / 360.0;
+    curve::part(
+        1,
+        match rules {
+            Rules::V2021 => part,
+            Rules::V2025 => part.ceil(),
+        },
+    )
 }
 
 /// Polygons at x ≥ 0, and whether they were on the other side before; nothing if they are on both.

@@ -11,6 +11,7 @@ mod hull;
 mod offset;
 mod paths;
 mod revolve;
+mod split;
 
 use std::sync::Arc;
 
@@ -24,6 +25,7 @@ pub(super) use hull::{hull, sum};
 pub(super) use offset::{Join, offset, offset_with_arcs};
 pub(super) use paths::{Paths, filled};
 pub(super) use revolve::{in_wedge, revolved, turned};
+pub(super) use split::{by_length, by_number, split};
 
 /// A plane shape: cheap to clone, never changed.
 #[derive(Clone, Debug)]

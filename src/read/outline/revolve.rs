@@ -9,7 +9,7 @@ use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 use super::Paths;
 use crate::angle::{cos_deg, sin_deg};
-use crate::mesh::{Ends, Mesh, MeshError, loft};
+use crate::mesh::{Ends, Mesh, MeshError, Quad, loft};
 use crate::op::Op;
 use crate::solid::Solid;
 
@@ -39,19 +39,17 @@ pub(in crate::read) fn revolved(paths: &Paths) -> Solid {
     }
 }
 
-/// What of a solid lies in a wedge about the z-axis, from the x-axis by an angle of degrees from
-/// 0 to 360.
-pub(in crate::read) fn in_wedge(solid: Solid, degrees: f64) -> Solid {
-    // Points on the left of the start and on the right of the end.
-    let start = Solid::half_space(-DVec3::Y, 0.0);
-    let (sin, cos) = (sin_deg(degrees), cos_deg(degrees));
-    let end = Solid::half_space(DVec3::new(-sin, cos, 0.0), 0.0);
-    if degrees <= 180.0 {
-        solid & (start & end)
+/// What of a solid lies in a wedge about the z-axis, between angles in degrees that are less than a
+/// turn apart.
+pub(in crate::read) fn in_wedge(solid: Solid, [from, to]: [f64; 2]) -> Solid {
+    let right_of = |degrees: f64| {
+        let normal = DVec3::new(-sin_deg(degrees), cos_deg(degrees), 0.0);
+        Solid::half_space(normal, 0.0)
+    };
+    if to - from <= 180.0 {
+        solid & (right_of(from + 180.0) & right_of(to))
     } else {
-        let start = Solid::half_space(DVec3::Y, 0.0);
-        let end = Solid::half_space(DVec3::new(sin, -cos, 0.0), 0.0);
-        solid - (start & end)
+        solid - (right_of(from) & right_of(to + 180.0))
     }
 }
 
@@ -84,7 +82,8 @@ pub(in crate::read) fn turned(
         Ends::Joined => segments,
     };
     let sections: Vec<DAffine3> = (0..count).map(section).collect();
-    loft(paths, &sections, ends)
+    // What is turned has plane sides.
+    loft(paths, &sections, ends, Quad::short)
 }
 
 /// The polygons between the heights of their corners; what is between the same two edges at
