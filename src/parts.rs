@@ -105,7 +105,8 @@ impl Solid {
     }
 
     /// The operands of the topmost union that has several, in the order of the file, and where each
-    /// stands if that is known; the solid itself if there is no such union at the top.
+    /// stands, or the first leaf in it, if that is known; the solid itself if there is no such union
+    /// at the top.
     pub fn objects(&self) -> Vec<(Option<Place>, Self)> {
         let mut around: Vec<Around<'_>> = Vec::new();
         let (mut top, mut outer) = (self, None);
@@ -128,16 +129,15 @@ impl Solid {
         }
     }
 
-    /// Where it stands in its file, if its outermost tags say so.
+    /// Where it stands in its file, or the first in it that says so.
     fn place(&self) -> Option<Place> {
         let mut at = self;
-        while let (Kind::Tagged(tag), [child]) = (at.kind(), at.children()) {
-            if let Tag::Place(place) = tag {
+        loop {
+            if let Kind::Tagged(Tag::Place(place)) = at.kind() {
                 return Some(*place);
             }
-            at = child;
+            at = at.children().first()?;
         }
-        None
     }
 
     /// The nodes, by their addresses, from which material can have a name or a colour that it was

@@ -276,6 +276,29 @@ fn check_says_what_is_in_a_model() {
 }
 
 #[test]
+fn objects_are_told_apart_by_their_colors() {
+    let desk = Desk::new();
+    desk.put(
+        "two.csg",
+        "color([1, 0, 0]) { cube(2); }\n  multmatrix([[1, 0, 0, 5]]) difference() { cube(2); cube(1); }\n",
+    );
+    let render = ["render", "two.csg", "-o", "o.png", "--look", "object", "--json"];
+    let done = desk.run(&render);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let json: serde_json::Value = serde_json::from_str(&done.out).expect("one object");
+    let objects = json["objects"].as_array().expect("a list");
+    let names: Vec<_> = objects.iter().map(|object| object["name"].as_str()).collect();
+    assert_eq!(names, [Some("1:20"), Some("2:45")]);
+    assert_ne!(objects[0]["color"], objects[1]["color"]);
+    let picture = image::open(desk.path("o.png")).expect("a picture").to_rgb8();
+    // Red is not among them: the colours of the model are not looked at.
+    let is_red = |p: &image::Rgb<u8>| p.0[0] > 100 && p.0[1] < 60 && p.0[2] < 60;
+    assert!(!picture.pixels().any(is_red));
+    let done = desk.run(&["render", "two.csg", "-o", "o.png", "--look", "object", "-v"]);
+    assert!(done.err.contains(" is 2:45\n"), "{}", done.err);
+}
+
+#[test]
 fn check_finds_faults_and_says_where() {
     let desk = Desk::new();
     desk.put("bad.csg", "union() {\n\tnonsense(r = 1);\n}\n");

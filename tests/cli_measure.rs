@@ -86,6 +86,39 @@ fn parts_are_measured_each_with_its_density() {
 }
 
 #[test]
+fn objects_are_measured_each_with_its_density() {
+    let desk = Desk::new();
+    desk.put(
+        "two.csg",
+        "cube(size = 2, center = true);\n  multmatrix([[1, 0, 0, 9]]) cube(size = 1, center = true);\n",
+    );
+    let measure = |more: &[&str]| {
+        let args =
+            ["measure", "two.csg", "--rel-tol", "1e-3", "--by", "object", "--density"];
+        desk.run(&[&args, more].concat())
+    };
+    let densities = ["1", "--density", "2:30=5"];
+    let found = json(&measure(&[&densities[..], &["--json"]].concat()).out);
+    assert_eq!(found["by"], "objects");
+    let names = [0, 1].map(|i| found["parts"][i]["name"].clone());
+    assert_eq!(names, ["1:1", "2:30"]);
+    assert!((number(&found["mass"]["mass"]["value"]) - 13.0).abs() < 0.05);
+    let text = measure(&densities).out;
+    assert!(text.contains("\nobjects, each by itself\n  1:1   volume "), "{text}");
+    let done = measure(&["lid=1"]);
+    assert!(done.err.contains("no object `lid`; there are: 1:1, 2:30"), "{}", done.err);
+    // Runs of objects are merged like those of parts, but not with them.
+    desk.put("0.json", &measure(&["1", "--seed", "0", "--json"]).out);
+    desk.put("1.json", &measure(&["1", "--seed", "1", "--json"]).out);
+    let merged = json(&desk.run(&["merge", "0.json", "1.json", "--json"]).out);
+    assert_eq!(merged["parts"][1]["name"], "2:30");
+    let parts = ["measure", "two.csg", "--rel-tol", "1e-3", "--density", "1", "--json"];
+    desk.put("2.json", &desk.run(&[&parts[..], &["--seed", "2"]].concat()).out);
+    let done = desk.run(&["merge", "0.json", "2.json"]);
+    assert!(done.err.contains("other parts or densities"), "{}", done.err);
+}
+
+#[test]
 fn merged_runs_have_the_bits_of_one_run() {
     let desk = Desk::new();
     desk.put("parts.csg", PARTS);

@@ -202,16 +202,27 @@ impl Reading {
         file: &Path,
         global: Global,
     ) -> anyhow::Result<(Loaded, Solid)> {
+        self.load_changed(file, global, |solid| solid)
+    }
+
+    /// The same of what becomes of the solid that was read.
+    pub(super) fn load_changed(
+        &self,
+        file: &Path,
+        global: Global,
+        change: impl FnOnce(Solid) -> Solid,
+    ) -> anyhow::Result<(Loaded, Solid)> {
         let start = Instant::now();
         let model = self.read(file, global)?;
         let read_seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let scene = self.compile(file, &model.solid)?;
+        let solid = change(model.solid);
+        let scene = self.compile(file, &solid)?;
         let compile_seconds = start.elapsed().as_secs_f64();
         if scene.bounds().is_empty() && !global.quiet {
             report::note(&format!("warning: {}: the model is empty", file.display()));
         }
-        Ok((Loaded { scene, read_seconds, compile_seconds }, model.solid))
+        Ok((Loaded { scene, read_seconds, compile_seconds }, solid))
     }
 
     /// Compiles a model; an error begins with the file's name.

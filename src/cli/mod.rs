@@ -16,6 +16,7 @@ mod meter;
 mod numbers;
 mod output;
 mod overlaps;
+mod pieces;
 mod ray;
 mod render;
 mod report;

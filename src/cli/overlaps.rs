@@ -4,16 +4,16 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde::Serialize;
+use solidray::Solid;
 use solidray::measure::{self, Overlap};
-use solidray::{Place, Solid};
 
 use super::input::Reading;
 use super::interrupt::interrupted;
-use super::measure::label;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, point};
+use super::pieces::{By, pieces};
 use super::sampling::SamplingArgs;
 use super::{Answer, Global};
 
@@ -34,14 +34,6 @@ pub(super) struct Overlaps {
     sampling: SamplingArgs,
     #[command(flatten)]
     reading: Reading,
-}
-
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum By {
-    /// What shares a name or a colour
-    Parts,
-    /// The operands at the top of the model
-    Objects,
 }
 
 #[derive(Serialize)]
@@ -92,23 +84,10 @@ impl Overlaps {
     }
 
     fn pieces(&self, solid: &Solid) -> (Vec<String>, Vec<Solid>) {
-        let parts = solid.parts();
-        let by = self.by.unwrap_or(if parts.len() > 1 { By::Parts } else { By::Objects });
-        match by {
-            By::Parts => {
-                parts.into_iter().map(|(part, solid)| (label(&part), solid)).unzip()
-            }
-            By::Objects => {
-                let name = |(i, (place, solid)): (usize, (Option<Place>, Solid))| {
-                    let name = match place {
-                        Some(Place { line, column }) => format!("{line}:{column}"),
-                        None => format!("object {}", i + 1),
-                    };
-                    (name, solid)
-                };
-                solid.objects().into_iter().enumerate().map(name).unzip()
-            }
-        }
+        let chosen = pieces(solid, self.by.unwrap_or(By::Parts));
+        let several = self.by.is_some() || chosen.len() > 1;
+        let chosen = if several { chosen } else { pieces(solid, By::Objects) };
+        chosen.into_iter().unzip()
     }
 }
 

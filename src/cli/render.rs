@@ -9,13 +9,16 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use image::ImageFormat;
 use serde::Serialize;
-use solidray::Aabb;
-use solidray::render::{self, Camera, Light, Look, Projection, Scheme, Style};
+use solidray::render::{
+    self, Camera, Light, Look, Projection, Scheme, Style, distinct_color,
+};
+use solidray::{Aabb, Op, Solid};
 
 use super::input::Reading;
 use super::meter::Meter;
 use super::numbers;
 use super::output;
+use super::pieces::{By, hex, pieces};
 use super::{Answer, Global};
 
 /// Draw a picture
@@ -77,6 +80,8 @@ enum LookArg {
     Depth,
     /// a colour for each leaf
     Leaf,
+    /// a colour for each object at the top of the model; -v and --json say which is whose
+    Object,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
@@ -94,7 +99,16 @@ struct Report {
     height: u32,
     samples: u32,
     rays: u64,
+    /// The objects that are told apart by their colours.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    objects: Vec<ObjectJson>,
     seconds: Seconds,
+}
+
+#[derive(Serialize)]
+struct ObjectJson {
+    name: String,
+    color: String,
 }
 
 #[derive(Serialize)]
@@ -120,11 +134,16 @@ impl Render {
         } else if global.json {
             bail!("standard output cannot take both the picture and --json");
         }
-        let loaded = self.reading.load(&self.file, global)?;
+        let mut objects = Vec::new();
+        let change = |solid: Solid| match self.look {
+            LookArg::Object => colored(&solid, &mut objects),
+            LookArg::Shaded | LookArg::Normal | LookArg::Depth | LookArg::Leaf => solid,
+        };
+        let loaded = self.reading.load_changed(&self.file, global, change)?.0;
         let camera = self.camera(&loaded.scene.bounds());
         let style = Style {
             look: match self.look {
-                LookArg::Shaded => Look::Shaded,
+                LookArg::Shaded | LookArg::Object => Look::Shaded,
                 LookArg::Normal => Look::Normal,
                 LookArg::Depth => Look::Depth,
                 LookArg::Leaf => Look::Leaf,
@@ -163,12 +182,23 @@ impl Render {
             let seconds = Seconds { read, compile, trace, write };
             output::json(
                 out,
-                Report { output, width, height, samples: self.samples, rays, seconds },
+                Report {
+                    output,
+                    width,
+                    height,
+                    samples: self.samples,
+                    rays,
+                    objects,
+                    seconds,
+                },
             )?;
         } else if global.verbose {
             super::report::note(&format!(
                 "{rays} rays; seconds: read {read:.3}, compile {compile:.3}, trace {trace:.3}, write {write:.3}"
             ));
+            for ObjectJson { name, color } in objects {
+                super::report::note(&format!("{color} is {name}"));
+            }
         }
         Ok(Answer::Yes)
     }
@@ -185,6 +215,17 @@ impl Render {
         };
         camera.with_projection(self.projection)
     }
+}
+
+/// The solid with a colour for each object at its top, and which is whose.
+fn colored(solid: &Solid, names: &mut Vec<ObjectJson>) -> Solid {
+    let objects = (0..).zip(pieces(solid, By::Objects));
+    let colored = objects.map(|(number, (name, object))| {
+        let color = distinct_color(number);
+        names.push(ObjectJson { name, color: hex(color) });
+        object.colored(color)
+    });
+    Solid::boolean(Op::Union, colored)
 }
 
 /// What would only be found out after the work.

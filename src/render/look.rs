@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::Scheme;
 use super::light::reflection;
-use super::scheme::{decoded, linear, oklch};
+use super::scheme::{decoded, linear, oklch, srgb8};
 use crate::color::Color;
 
 /// What a picture shows of a surface.
@@ -74,6 +74,12 @@ impl Look {
 fn lit(color: Vec3, seen: &Seen) -> Vec3 {
     let light = reflection(seen.eye_normal, seen.to_viewer);
     seen.openness * (light.diffuse * color + light.specular)
+}
+
+/// A colour that is easily told from those of other numbers, as in [`Look::Leaf`].
+pub fn distinct_color(number: u32) -> Color {
+    let [r, g, b] = srgb8(leaf_color(number)).map(|byte| f32::from(byte) / 255.0);
+    Color::rgb(r, g, b)
 }
 
 /// A colour for each leaf. Hues follow each other by the golden ratio of a turn, so that

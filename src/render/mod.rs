@@ -12,7 +12,8 @@
 //!
 //! In `look.rs` a variant of `Look`, its place in `Look::ALL`, and an arm each in
 //! `Look::paint` and `Look::background`; in the command line's `render.rs` a value of
-//! `LookArg` and its arm.
+//! `LookArg` and its arm. What colours alone can show, as `--look object` does, is only in the
+//! latter: it colours the solid.
 
 mod camera;
 mod chunks;
@@ -42,7 +43,7 @@ pub use frame::{Frame, trace};
 #[cfg(feature = "image")]
 pub use light::Light;
 #[cfg(feature = "image")]
-pub use look::Look;
+pub use look::{Look, distinct_color};
 #[cfg(feature = "image")]
 pub use picture::{Style, picture};
 #[cfg(feature = "image")]

@@ -1,17 +1,20 @@
 //! What `measure` prints with `--json` and `merge` reads.
 
 use serde::{Deserialize, Serialize};
+use solidray::Aabb;
 use solidray::measure::{
     self, Body, Mass, Missed, Properties, Quantity, Replicate, Run, Sampling,
 };
-use solidray::{Aabb, Part};
 
 use super::super::output::{BoundsJson, bounds_json};
-use super::label;
+use super::super::pieces::By;
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Report {
     pub(super) file: String,
+    /// What the parts are; reports from before there were objects have parts.
+    #[serde(default)]
+    pub(super) by: By,
     /// The whole solid; what parts share counts once.
     pub(super) whole: PartJson,
     /// The parts, if there are several.
@@ -140,9 +143,9 @@ impl Report {
 }
 
 impl PartJson {
-    pub(super) fn new(part: Option<&Part>, density: Option<f64>, runs: &[Run]) -> Self {
+    pub(super) fn new(name: Option<&str>, density: Option<f64>, runs: &[Run]) -> Self {
         let runs = runs.iter().map(RunJson::from).collect();
-        Self { name: part.map(label), density, properties: None, runs }
+        Self { name: name.map(str::to_owned), density, properties: None, runs }
     }
 
     fn measured(&self) -> Vec<Run> {

@@ -73,7 +73,9 @@ fn add(all: &mut Report, more: Report) -> anyhow::Result<()> {
         report.parts.iter().map(|part| (part.name.clone(), part.density)).collect()
     };
     ensure!(
-        labels(all) == labels(&more) && all.whole.density == more.whole.density,
+        all.by == more.by
+            && labels(all) == labels(&more)
+            && all.whole.density == more.whole.density,
         "it has other parts or densities than the files before it"
     );
     #[expect(clippy::float_cmp, reason = "what was typed is the same or is not")]

@@ -11,11 +11,12 @@ use std::time::Instant;
 use anyhow::bail;
 use clap::Args;
 use solidray::measure::{self, Run, Sampling};
-use solidray::{Part, Scene, Solid};
+use solidray::{Scene, Solid};
 
 use super::input::Reading;
 use super::interrupt::interrupted;
 use super::meter::Meter;
+use super::pieces::{By, pieces};
 use super::sampling::SamplingArgs;
 use super::{Answer, Global, output};
 use json::{PartJson, Report};
@@ -26,13 +27,17 @@ pub(super) use merge::Merge;
 /// Lattices of rays along three axes are made larger until all intervals are as narrow as
 /// asked: those of volume, surface and inertia as a fraction of the value, that of the
 /// centroid as a fraction of the radius of gyration. Names and colours of the model are
-/// parts, measured each by itself in its own bounds. Ctrl-C ends with the best answer so far.
+/// parts, measured each by itself in its own bounds, or else the objects at its top are. Ctrl-C ends with the best answer so far.
 #[derive(Args, Debug)]
 pub(super) struct Measure {
     /// The model
     file: PathBuf,
+    /// What is measured by itself, besides the whole
+    #[arg(long, value_enum, default_value_t = By::Parts)]
+    by: By,
     /// The mass of a cubic unit, of everything or of one part by its name or colour; may be
-    /// given several times, as in --density 1e-3 --density screw=7.85e-3 --density '#ff0000=2e-3'
+    /// given several times, as in --density 1e-3 --density screw=7.85e-3 --density '#ff0000=2e-3';
+    /// with --by objects of one by its line and column, as in --density 7:1=2.7e-3
     #[arg(long, value_name = "[PART=]D", value_parser = density)]
     density: Vec<Density>,
     /// Measure with this many seeds, beginning with --seed, and combine them; the same numbers as
@@ -65,25 +70,6 @@ fn density(text: &str) -> Result<Density, String> {
     }
 }
 
-/// What a part is called in reports and in `--density`: its name, or else its colour.
-pub(super) fn label(part: &Part) -> String {
-    if let Some(name) = &part.name {
-        return name.to_string();
-    }
-    let Some(color) = part.color else { return "other".to_owned() };
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "it is rounded and between 0 and 255"
-    )]
-    let [r, g, b, a] = color.rgba.map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8);
-    if a == 255 {
-        format!("#{r:02x}{g:02x}{b:02x}")
-    } else {
-        format!("#{r:02x}{g:02x}{b:02x}{a:02x}")
-    }
-}
-
 impl Measure {
     pub(super) fn run(
         &self,
@@ -93,7 +79,7 @@ impl Measure {
         let start = Instant::now();
         let solid = self.reading.read(&self.file, global)?.solid;
         let scene = self.reading.compile(&self.file, &solid)?;
-        let parts = solid.parts();
+        let parts = pieces(&solid, self.by);
         let densities = self.densities(&parts)?;
         let meter = Meter::interruptible(global, "measuring")?;
         let watch = |rays| meter.step(rays);
@@ -123,6 +109,7 @@ impl Measure {
         let whole_density = if parts.len() > 1 { None } else { density(0) };
         let mut report = Report {
             file: self.file.display().to_string(),
+            by: self.by,
             whole: PartJson::new(None, whole_density, &whole),
             parts: (0..pieces.len())
                 .map(|i| PartJson::new(Some(&parts[i].0), density(i), &pieces[i]))
@@ -138,21 +125,21 @@ impl Measure {
     }
 
     /// The density of each part, if any was given.
-    fn densities(&self, parts: &[(Part, Solid)]) -> anyhow::Result<Option<Vec<f64>>> {
-        let labels: Vec<String> = parts.iter().map(|(part, _)| label(part)).collect();
-        let known = || labels.join(", ");
+    fn densities(&self, parts: &[(String, Solid)]) -> anyhow::Result<Option<Vec<f64>>> {
+        let labels: Vec<&str> = parts.iter().map(|(name, _)| name.as_str()).collect();
+        let (known, noun) = (|| labels.join(", "), self.by.noun());
         for Density { part, .. } in &self.density {
             if let Some(part) = part
-                && !labels.contains(part)
+                && !labels.contains(&part.as_str())
             {
-                bail!("--density: there is no part `{part}`; there are: {}", known());
+                bail!("--density: there is no {noun} `{part}`; there are: {}", known());
             }
         }
         if self.density.is_empty() {
             return Ok(None);
         }
-        let of = |label: &String| {
-            let named = self.density.iter().rfind(|d| d.part.as_ref() == Some(label));
+        let of = |label: &&str| {
+            let named = self.density.iter().rfind(|d| d.part.as_deref() == Some(*label));
             let all = self.density.iter().rfind(|d| d.part.is_none());
             named.or(all).map(|density| density.value)
         };
@@ -160,7 +147,7 @@ impl Measure {
         match found {
             Some(found) => Ok(Some(found)),
             None => bail!(
-                "--density: some part has none; give one for all others, as in --density 1e-3; there are: {}",
+                "--density: some {noun} has none; give one for all others, as in --density 1e-3; there are: {}",
                 known()
             ),
         }
@@ -195,7 +182,6 @@ fn answer(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use solidray::Color;
 
     #[test]
     fn densities_may_name_a_part() {
@@ -206,17 +192,5 @@ mod tests {
         assert!(
             density("a=-1").is_err() && density("x").is_err() && density("").is_err()
         );
-    }
-
-    #[test]
-    fn colors_are_labels_of_parts_without_names() {
-        let red = Part { name: None, color: Some(Color::rgb(1.0, 0.0, 0.0)) };
-        assert_eq!(label(&red), "#ff0000");
-        let named = Part { name: Some("lid".into()), ..red };
-        assert_eq!(label(&named), "lid");
-        let clear =
-            Part { name: None, color: Some(Color { rgba: [0.0, 0.0, 1.0, 0.5] }) };
-        assert_eq!(label(&clear), "#0000ff80");
-        assert_eq!(label(&Part::default()), "other");
     }
 }

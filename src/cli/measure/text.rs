@@ -21,7 +21,7 @@ pub(super) fn print(
         }
     }
     if !report.parts.is_empty() {
-        writeln!(out, "\nparts, each by itself")?;
+        writeln!(out, "\n{}s, each by itself", report.by.noun())?;
         let name = |name: &Option<String>| name.clone().unwrap_or_default();
         let width =
             report.parts.iter().map(|part| name(&part.name).chars().count()).max();
