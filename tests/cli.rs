@@ -276,6 +276,44 @@ fn check_says_what_is_in_a_model() {
 }
 
 #[test]
+fn check_says_which_curves_are_true_and_by_which_rule() {
+    let desk = Desk::new();
+    desk.put(
+        "nut.csg",
+        "difference() { cylinder(h = 3, r1 = 8, r2 = 8, $fn = 6); cylinder(h = 9, r1 = 3, r2 = 3, center = true); }
+        hull() { sphere(r = 1); multmatrix([[1, 0, 0, 20]]) sphere(r = 1); }
+        linear_extrude(height = 3, twist = 90) square(2);",
+    );
+    let check = |args: &[&str]| {
+        let done = desk.run(&[&["check", "nut.csg"], args].concat());
+        let starts =
+            |line: &&str| line.starts_with("curves") || line.starts_with("facets");
+        done.out.lines().filter(starts).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(
+        check(&[]),
+        "curves     3 true curves, 1 deliberate polygon ($fn up to 8; --curves exact makes them round)\n\
+         facets     1 node with curves that have no exact solid: within 0.005 of them (--facet-tolerance), \
+         1 extrusion in slices as OpenSCAD makes them"
+    );
+    assert_eq!(
+        check(&["--curves", "exact"]).lines().next(),
+        Some("curves     4 true curves")
+    );
+    assert_eq!(
+        check(&["--curves", "faceted"]),
+        "curves     0 true curves, 4 polygons as OpenSCAD makes them (--curves faceted)\n\
+         facets     1 extrusion in slices as OpenSCAD makes them"
+    );
+    let json: serde_json::Value =
+        serde_json::from_str(&desk.run(&["check", "nut.csg", "--json"]).out)
+            .expect("one");
+    let counts = ["true_curves", "polygons", "fine", "sliced", "made_by_openscad"];
+    assert_eq!(counts.map(|name| json[name].as_u64()), [3, 1, 1, 1, 0].map(Some));
+    assert_eq!(json["facet_tolerance"], 0.005);
+}
+
+#[test]
 fn objects_are_told_apart_by_their_colors() {
     let desk = Desk::new();
     desk.put(

@@ -49,6 +49,10 @@ struct Report {
     true_curves: usize,
     polygons: usize,
     faceted: usize,
+    fine: usize,
+    sliced: usize,
+    made_by_openscad: usize,
+    facet_tolerance: f64,
     turned: usize,
     bounds: Option<BoundsJson>,
     /// What a few thousand rays found, and how much of it is thinner than rounding.
@@ -102,7 +106,8 @@ impl Check {
             Err(error) => return Err(error),
         };
         let file = self.file.to_string_lossy();
-        let mut report = Report::new(&file, &model, &scene);
+        let tolerance = self.reading.facet_tolerance();
+        let mut report = Report::new(&file, &model, &scene, tolerance);
         report.near_misses = near_misses.pairs.iter().map(|w| pair(w, &scene)).collect();
         report.suggested_weld = near_misses.weld;
         report.warnings.extend(warning(&file, &near_misses, &scene));
@@ -180,7 +185,7 @@ const A_FEW_RAYS: Sampling = Sampling {
 };
 
 impl Report {
-    fn new(file: &str, model: &Model, scene: &Scene) -> Self {
+    fn new(file: &str, model: &Model, scene: &Scene, facet_tolerance: f64) -> Self {
         let census = Solid::census(&model.solid);
         let (mut kinds, mut faces) = (BTreeMap::new(), 0);
         for i in (0_u32..).take(scene.leaf_count()) {
@@ -202,6 +207,10 @@ impl Report {
             true_curves: model.counts.curves,
             polygons: model.counts.polygons,
             faceted: model.counts.faceted,
+            fine: model.counts.fine,
+            sliced: model.counts.sliced,
+            made_by_openscad: model.counts.elsewhere,
+            facet_tolerance,
             turned: model.counts.turned,
             bounds: bounds_json(&scene.bounds()),
             rays: sample.rays,
@@ -237,11 +246,10 @@ impl Report {
         writeln!(out, "operators  {}", operators.join(", "))?;
         writeln!(out, "maps       {}", self.maps)?;
         writeln!(out, "depth      {}", self.depth)?;
-        writeln!(
-            out,
-            "curves     {} true, {} deliberate polygons, {} made polygons by --curves",
-            self.true_curves, self.polygons, self.faceted
-        )?;
+        writeln!(out, "curves     {}", self.curves())?;
+        if let Some(facets) = self.facets() {
+            writeln!(out, "facets     {facets}")?;
+        }
         let bounds = scene.bounds();
         if bounds.is_empty() {
             writeln!(out, "bounds     none: the model is empty")?;
@@ -271,6 +279,50 @@ impl Report {
         }
         Ok(())
     }
+}
+
+impl Report {
+    /// What became of curves, and by which rule.
+    fn curves(&self) -> String {
+        let mut words = vec![counted(self.true_curves, "true curve")];
+        if self.polygons > 0 {
+            words.push(format!(
+                "{} ($fn up to 8; --curves exact makes them round)",
+                counted(self.polygons, "deliberate polygon")
+            ));
+        }
+        if self.faceted > 0 {
+            let made = counted(self.faceted, "polygon");
+            words.push(format!("{made} as OpenSCAD makes them (--curves faceted)"));
+        }
+        words.join(", ")
+    }
+
+    /// What has facets that are not the author's; nothing if there are none.
+    fn facets(&self) -> Option<String> {
+        let mut words = Vec::new();
+        if self.fine > 0 {
+            words.push(format!(
+                "{} with curves that have no exact solid: within {} of them (--facet-tolerance)",
+                counted(self.fine, "node"),
+                self.facet_tolerance
+            ));
+        }
+        if self.sliced > 0 {
+            let made = counted(self.sliced, "extrusion");
+            words.push(format!("{made} in slices as OpenSCAD makes them"));
+        }
+        if self.made_by_openscad > 0 {
+            let made = counted(self.made_by_openscad, "node");
+            words.push(format!("{made} made by the installed OpenSCAD"));
+        }
+        (!words.is_empty()).then(|| words.join(", "))
+    }
+}
+
+/// So many of something.
+fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 /// Prints the first few pairs, or all of them.

@@ -245,6 +245,11 @@ impl Reading {
             .map_err(|error| CompileFault { file: file.display().to_string(), error })
     }
 
+    /// How far facets may be from curves.
+    pub(super) fn facet_tolerance(&self) -> f64 {
+        self.facet_tolerance
+    }
+
     /// What was chosen for compiling.
     pub(super) fn compiling(&self) -> CompileOptions {
         CompileOptions { weld: self.weld, most_nodes: self.max_nodes }

@@ -30,6 +30,14 @@ pub struct Counts {
     pub polygons: usize,
     /// Those read as polygons because [`Curves::Faceted`](super::Curves) asks for it.
     pub faceted: usize,
+    /// Nodes where curves have no exact solid, so that they are facets within
+    /// [`ReadOptions::facet_tolerance`](super::ReadOptions::facet_tolerance): hulls, sums, twisted
+    /// extrusions and the like.
+    pub fine: usize,
+    /// Extrusions with twist or uneven scale, cut into slices as OpenSCAD does it.
+    pub sliced: usize,
+    /// Nodes that were left to the installed OpenSCAD.
+    pub elsewhere: usize,
     /// Meshes that were inside out and have been turned.
     pub turned: usize,
 }

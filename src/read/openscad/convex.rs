@@ -132,7 +132,7 @@ pub(super) fn fine<T>(reading: &Reading<'_>, make: impl FnOnce(&Fine<'_>) -> T) 
     const FEWEST: u32 = 72;
     // A quarter of the distance are twice the segments.
     let tolerance = 0.25 * reading.options.facet_tolerance;
-    let segments = |radius: f64| curve::fine(radius, tolerance).max(FEWEST);
+    let segments = |radius: f64| curve::fine(radius, tolerance, reading).max(FEWEST);
     make(&Fine { segments: &segments, most_triangles: reading.options.max_facets })
 }
 

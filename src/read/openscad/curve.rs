@@ -52,10 +52,11 @@ pub(super) fn fineness(call: &Call<'_>) -> Result<Fineness, Located> {
 
 /// The segments of a circle that stands for a true one where there is no exact solid: polygons of
 /// the same area are nowhere farther from it than the tolerance, and never coarse.
-pub(super) fn fine(radius: f64, tolerance: f64) -> u32 {
+pub(super) fn fine(radius: f64, tolerance: f64, reading: &Reading<'_>) -> u32 {
     /// The fewest and the most segments.
     const FEWEST: f64 = 48.0;
     const MOST: f64 = 1440.0;
+    reading.is_fine.set(true);
     let half = (1.0 - (tolerance / radius).min(1.0)).acos();
     // Multiples of four have corners on the axes.
     let quarters = (0.25 * (PI / half).clamp(FEWEST, MOST)).ceil();

@@ -44,6 +44,7 @@ pub(super) fn evaluated(
             shape
         }
     };
+    reading.model.counts.elsewhere += 1;
     if !reading.asked.contains(&what) {
         reading.warn(place, format!("{what} is left to OpenSCAD, which makes facets"));
         reading.asked.push(what);

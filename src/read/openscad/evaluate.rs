@@ -1,5 +1,6 @@
 //! Walks the statements and makes shapes from the leaves up.
 
+use std::cell::Cell;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -45,6 +46,8 @@ pub(super) struct Reading<'a> {
     left_out: Option<Located>,
     /// Whether only the hull of what is being made matters.
     pub(super) is_hulled: bool,
+    /// Whether facets stand for curves in what is being made.
+    pub(super) is_fine: Cell<bool>,
 }
 
 impl Reading<'_> {
@@ -100,6 +103,7 @@ pub(super) fn model(
         budget,
         left_out: None,
         is_hulled: false,
+        is_fine: Cell::new(false),
     };
     let (next, end) = content(document);
     let shapes = shapes(document, next, end, &mut reading)?;
@@ -161,6 +165,7 @@ fn shapes(
                 }
                 made => made?,
             };
+            reading.model.counts.fine += usize::from(reading.is_fine.take());
             let outer = open.last_mut().map_or(&mut outermost, |f| &mut f.children);
             outer.push(shape);
         }

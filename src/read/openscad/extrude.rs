@@ -113,7 +113,8 @@ impl Sweep {
         reading: &mut Reading<'_>,
     ) -> Result<Result<Option<Solid>, MeshError>, Located> {
         let tolerance = reading.options.facet_tolerance;
-        let mut paths = outline.polygons(&|radius| curve::fine(radius, tolerance));
+        let mut paths =
+            outline.polygons(&|radius| curve::fine(radius, tolerance, reading));
         let slices = match call.number("slices")? {
             Some(slices) => curve::part(1, slices),
             None => self.slices(&curve::fineness(call)?, &paths, reading.options.rules),
@@ -126,6 +127,7 @@ impl Sweep {
         let triangles = (2 * u64::from(slices)).saturating_mul(corners.sum());
         reading.count_facets(triangles, call.place())?;
         self.divide(&mut paths, slices, most, call)?;
+        reading.model.counts.sliced += 1;
         let sections: Vec<DAffine3> = self.sections(slices).collect();
         let diagonal = |quad: &Quad| self.diagonal(quad, slices);
         Ok(match loft(&paths, &sections, Ends::Open, diagonal) {

@@ -115,7 +115,8 @@ fn drawing(
     let tolerance = reading.options.facet_tolerance;
     let mut segments = |radius: f64| {
         let segments = curve::segments(radius, call, reading)?;
-        let segments = segments.unwrap_or_else(|| curve::fine(radius, tolerance));
+        let segments =
+            segments.unwrap_or_else(|| curve::fine(radius, tolerance, reading));
         reading.count_facets(round::frustum_triangles(segments), call.place())?;
         Ok(segments)
     };

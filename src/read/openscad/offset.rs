@@ -33,7 +33,9 @@ pub(super) fn offset(
         return Ok(Shape::Flat(outline));
     }
     let tolerance = reading.options.facet_tolerance;
-    let polygons = || outline.polygons(&|radius| curve::fine(radius, tolerance));
+    let polygons = |reading: &Reading<'_>| {
+        outline.polygons(&|radius| curve::fine(radius, tolerance, reading))
+    };
     let grown = if radius.is_some() || delta.is_none() {
         let segments = curve::segments(distance.abs(), call, reading)?;
         match (segments, outline.as_circle()) {
@@ -46,25 +48,25 @@ pub(super) fn offset(
                 return Ok(flat(circle.mapped(DAffine2::from_translation(center)), call));
             }
             (None, None) => {
-                let paths = polygons();
+                let paths = polygons(reading);
                 let arcs =
                     outline::offset_with_arcs(&paths, distance, tolerance, MOST_ARCS);
                 match arcs {
                     Some(outline) => return Ok(flat(outline, call)),
                     None => {
-                        let segments = curve::fine(distance.abs(), tolerance);
+                        let segments = curve::fine(distance.abs(), tolerance, reading);
                         rounded(&paths, distance, segments, call, reading)?
                     }
                 }
             }
             (Some(segments), _) => {
-                rounded(&polygons(), distance, segments, call, reading)?
+                rounded(&polygons(reading), distance, segments, call, reading)?
             }
         }
     } else {
         let join =
             if is_chamfered { Join::Chamfer } else { Join::Mitre { limit: LIMIT } };
-        outline::offset(&polygons(), distance, join)
+        outline::offset(&polygons(reading), distance, join)
     };
     if grown.is_empty() {
         return Ok(Shape::Empty);

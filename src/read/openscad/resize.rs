@@ -37,6 +37,8 @@ pub(super) fn resize(
                     parts.iter().fold(Aabb::EMPTY, |b, mesh| b.hull(mesh.bounds()))
                 }
             };
+            // Facets that are only measured are none of the model.
+            reading.is_fine.set(false);
             match factors(bounds.size().to_array(), wanted, auto) {
                 Some(scale) => Shape::Solid(
                     solid.mapped(DAffine3::from_scale(DVec3::from_array(scale))),
@@ -54,6 +56,7 @@ pub(super) fn resize(
                         [low.min(p), high.max(p)]
                     })
             });
+            reading.is_fine.set(false);
             let size = (high - low).extend(1.0).to_array();
             match factors(size, wanted, auto) {
                 Some([x, y, _]) => {

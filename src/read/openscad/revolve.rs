@@ -42,7 +42,7 @@ pub(super) fn rotate_extrude(
         return Ok(Shape::Empty);
     };
     let tolerance = reading.options.facet_tolerance;
-    let paths = outline.polygons(&|radius| curve::fine(radius, tolerance));
+    let paths = outline.polygons(&|radius| curve::fine(radius, tolerance, reading));
     let Some((paths, is_turned)) = on_the_right(paths) else {
         reading.warn(call.place(), "`rotate_extrude` crosses its axis and makes nothing");
         return Ok(Shape::Empty);

@@ -72,7 +72,10 @@ pub(super) fn text(
     let cut = match curve::segments(size, call, reading)? {
         // The curves of letters are short: so many for a part of a turn.
         Some(segments) => Cut::Pieces((segments / 8 + 1).max(2)),
-        None => Cut::Within(reading.options.facet_tolerance.min(1e-4 * size)),
+        None => {
+            reading.is_fine.set(true);
+            Cut::Within(reading.options.facet_tolerance.min(1e-4 * size))
+        }
     };
     let line = written(buffer, &font, size, cut, call, reading)?;
     reading.count_facets(4 * line.corners() as u64, call.place())?;
