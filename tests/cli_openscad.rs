@@ -74,6 +74,21 @@ fn warnings_are_passed_on() {
     );
     let done = asked(&desk, "part.scad", &["-q"]);
     assert_eq!(done.err, "");
+    // Those about a node have its place, and are said once though it is asked twice.
+    let desk = self::desk(
+        r#"echo 'WARNING: thin ice' >&2
+        case "$3" in
+        *.off) echo 'Current top level object is not a 3D object.' >&2; exit 1;;
+        *) echo '<path d="M 0,0 L 2,0 L 2,2 z" stroke="black"/>' > "$3";;
+        esac"#,
+    );
+    desk.put("roof.csg", "linear_extrude(height = 2)\n  fill() { square(2); }\n");
+    let done = asked(&desk, "roof.csg", &[]);
+    assert_eq!(
+        done.err,
+        "solidray: warning: roof.csg:2:3: openscad: WARNING: thin ice\n\
+         solidray: warning: roof.csg:2:3: `fill` is left to OpenSCAD, which makes facets\n"
+    );
 }
 
 #[test]

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use glam::DVec2;
 
+use super::super::Warning;
 use super::super::error::{Located, ReadErrorKind};
 use super::super::faces::Faces;
 use super::super::off;
@@ -16,7 +17,7 @@ use super::super::program::{self, Fault};
 use super::evaluate::Reading;
 use super::node::Shape;
 use super::value::{Document, Value};
-use crate::solid::{Solid, Tag};
+use crate::solid::{Place, Solid, Tag};
 
 /// The nodes of OpenSCAD that are known, but not made here.
 const NODES: &[&str] = &["fill", "roof"];
@@ -38,7 +39,7 @@ pub(super) fn evaluated(
     let shape = match reading.elsewhere.get(&text) {
         Some(shape) => shape.clone(),
         None => {
-            let made = made(&text, &what, reading);
+            let made = made(&text, &what, place, reading);
             let shape = made.map_err(|error| error.or_at(place))?;
             reading.elsewhere.insert(text, shape.clone());
             shape
@@ -56,7 +57,12 @@ pub(super) fn evaluated(
     })
 }
 
-fn made(text: &str, what: &str, reading: &mut Reading<'_>) -> Result<Shape, Located> {
+fn made(
+    text: &str,
+    what: &str,
+    place: Place,
+    reading: &mut Reading<'_>,
+) -> Result<Shape, Located> {
     let fault = |kind| Located::nowhere(kind);
     let io = |error| fault(ReadErrorKind::Io(error));
     let folder = tempfile::tempdir().map_err(io)?;
@@ -73,6 +79,14 @@ fn made(text: &str, what: &str, reading: &mut Reading<'_>) -> Result<Shape, Loca
             Fault::Other(kind) => fault(kind),
         })?;
         let said = &done.said;
+        for line in said.lines().filter(|line| line.starts_with("WARNING")) {
+            let (place, message) = (Some(place), format!("openscad: {line}"));
+            let warning = Warning { place, message };
+            // A plane shape is asked for twice.
+            if !reading.model.warnings.contains(&warning) {
+                reading.model.warnings.push(warning);
+            }
+        }
         let failed = |status: String| {
             let stderr = said.clone();
             Err(fault(ReadErrorKind::OpenscadFailed { status, stderr }))
