@@ -8,6 +8,8 @@ mod support;
 use std::f64::consts::PI;
 use std::path::Path;
 
+use proptest::collection::vec;
+use proptest::prelude::*;
 use solidray::measure::{self, Sampling};
 use solidray::read::{self, Curves, Format, ReadOptions};
 use solidray::{Scene, Solid};
@@ -190,4 +192,136 @@ fn true_text_has_the_area_of_its_curves() {
     let expected = openscad::volume_of(&file);
     let volume = openscad::enclosed(&solid(&text, Curves::Exact));
     assert!((volume / expected - 1.0).abs() < 3e-4, "{volume}, not {expected}");
+}
+
+/// What is wrong with files of other formats that a text names is said with their names, and with
+/// lines where they have lines.
+#[test]
+fn broken_drawings_heights_and_pictures_are_refused() {
+    const PNG: &[u8] = b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\x02\0\0\0\x02\x08\0\0\0\0\x57\xdd\x52\xf8";
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("a.csg");
+    for (name, bytes, expected) in [
+        (
+            "words.dat",
+            &b"1 2 3\n4 five 6\n"[..],
+            "words.dat:2:3: expected a number, found `five`",
+        ),
+        (
+            "nan.dat",
+            b"# heights\n\n1 2\nnan 3\n",
+            "nan.dat:4:1: expected a finite number, found `nan`",
+        ),
+        (
+            "code.dxf",
+            b"0\nSECTION\n2\nENTITIES\nzero\nLINE\n",
+            "code.dxf:5:1: expected the code of a group, found `zero`",
+        ),
+        (
+            "number.dxf",
+            b"0\nSECTION\n2\nENTITIES\n0\nLINE\n10\nfar\n",
+            "number.dxf:8:1: expected a finite number, found `far`",
+        ),
+        ("short.png", &PNG[..20], "short.png: cannot be read: "),
+        ("empty.png", PNG, "empty.png: cannot be read: "),
+    ] {
+        std::fs::write(folder.path().join(name), bytes).expect("it is written");
+        let node = if name.ends_with("dxf") { "import" } else { "surface" };
+        let text = format!("linear_extrude(height = 1) {{\n  {node}(\"{name}\"); }}");
+        let options = ReadOptions::default();
+        let read = read::bytes(text.as_bytes(), &file, Format::Csg, &options);
+        let error = read.expect_err(name).to_string();
+        let folder = folder.path().display();
+        let start = format!("{folder}/a.csg:2:3: import: {folder}/{expected}");
+        assert!(error.starts_with(&start), "{error}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Whatever is in such files, they are read or refused.
+    #[test]
+    fn bytes_that_were_changed_are_read_or_refused(
+        chosen in any::<prop::sample::Index>(),
+        changes in vec((any::<prop::sample::Index>(), any::<u8>()), 1..9),
+        length in any::<prop::sample::Index>(),
+    ) {
+        let (name, bytes) = FILES[chosen.index(FILES.len())];
+        let mut bytes = bytes.to_vec();
+        for (at, byte) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = byte;
+        }
+        bytes.truncate(1 + length.index(bytes.len()));
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        std::fs::write(folder.path().join(name), bytes).expect("it is written");
+        let node = if name.ends_with("dxf") { "import" } else { "surface" };
+        let text = format!("linear_extrude(height = 1) {{ {node}(\"{name}\"); }}");
+        let options = ReadOptions {
+            max_facets: 100_000,
+            openscad: Some("no-such-program".into()),
+            ..ReadOptions::default()
+        };
+        let file = folder.path().join("a.csg");
+        let _ = read::bytes(text.as_bytes(), &file, Format::Csg, &options);
+    }
+}
+
+#[test]
+fn a_font_that_is_missing_is_replaced_with_a_warning() {
+    let text = thick("text(\"ab\", font = \"No Such Font\", $fn = 12);");
+    let alone =
+        ReadOptions { openscad: Some("no-such-program".into()), ..Default::default() };
+    let read = read::bytes(text.as_bytes(), Path::new("a.csg"), Format::Csg, &alone);
+    match read {
+        Ok(model) => {
+            let said = |w: &read::Warning| {
+                w.message.starts_with(
+                    "the font `No Such Font` is not installed; `text` is written in `",
+                )
+            };
+            assert!(model.warnings.iter().any(said), "{:?}", model.warnings);
+        }
+        // Where there are no fonts at all.
+        Err(error) => {
+            assert!(error.to_string().contains("there is no font to write"), "{error}");
+        }
+    }
+    if !openscad::is_installed("what it writes instead is not compared") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("a.csg");
+    std::fs::write(&file, &text).expect("it is written");
+    let expected = openscad::volume_of(&file);
+    let volume = openscad::enclosed(&solid_in(&text, Curves::Faceted, &file));
+    assert!((volume - expected).abs() <= 3e-4 * expected, "{volume} {expected}");
+}
+
+/// More arcs than are worth a leaf each become facets, and those are counted.
+#[test]
+fn offsets_of_many_corners_are_facets() {
+    let corner = |i: u32| {
+        let angle = f64::from(i) * PI / 600.0;
+        let radius = if i.is_multiple_of(2) { 300.0 } else { 290.0 };
+        format!("[{},{}]", radius * angle.cos(), radius * angle.sin())
+    };
+    let corners: Vec<String> = (0..1200).map(corner).collect();
+    let star = format!("offset(r = 1) polygon([{}]);", corners.join(","));
+    let options = |max_facets| ReadOptions { max_facets, ..ReadOptions::default() };
+    let read = |max_facets| {
+        let text = thick(&star);
+        read::bytes(
+            text.as_bytes(),
+            Path::new("a.csg"),
+            Format::Csg,
+            &options(max_facets),
+        )
+    };
+    let model = read(30_000_000).expect("there is room");
+    assert_eq!(model.solid.census().leaves, 1);
+    assert_eq!(model.counts.fine, 1);
+    let error = read(20_000).expect_err("there is not").to_string();
+    assert!(error.contains("which is more than the limit of 20000"), "{error}");
 }
