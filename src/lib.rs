@@ -91,6 +91,7 @@ pub mod read;
 pub mod render;
 mod sampling;
 mod scene;
+mod section;
 pub mod shape;
 mod shown;
 mod solid;

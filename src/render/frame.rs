@@ -107,7 +107,7 @@ impl Frame {
     }
 
     /// Where in the view the ray through a pixel is.
-    fn in_view(&self, x: u32, y: u32) -> [f64; 2] {
+    pub(super) fn in_view(&self, x: u32, y: u32) -> [f64; 2] {
         let (column, row) = (f64::from(x), f64::from(y) + f64::from(self.rows.start));
         [column + self.offset[0], row + self.offset[1]]
     }

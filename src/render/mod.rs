@@ -23,6 +23,10 @@ mod coverage;
 mod edges;
 mod frame;
 #[cfg(feature = "image")]
+mod heat;
+#[cfg(feature = "image")]
+mod lengths;
+#[cfg(feature = "image")]
 mod light;
 #[cfg(feature = "image")]
 mod look;
@@ -40,6 +44,10 @@ pub use camera::{Camera, CameraError, Projection};
 #[cfg(feature = "image")]
 pub use coverage::coverage;
 pub use frame::{Frame, trace};
+#[cfg(feature = "image")]
+pub use heat::{heat, heat_color};
+#[cfg(feature = "image")]
+pub use lengths::{depth, thickness};
 #[cfg(feature = "image")]
 pub use light::Light;
 #[cfg(feature = "image")]

@@ -25,6 +25,10 @@ pub struct Style {
     pub light: Light,
     /// Whether dark lines are drawn along outlines, steps and creases.
     pub edges: bool,
+    /// Whether the faces of half-spaces are hatched, as those of [`Solid::section`] are drawn.
+    ///
+    /// [`Solid::section`]: crate::Solid::section
+    pub hatch: bool,
 }
 
 impl Default for Style {
@@ -36,6 +40,7 @@ impl Default for Style {
             samples: 1,
             light: Light::Plain,
             edges: false,
+            hatch: false,
         }
     }
 }
@@ -87,8 +92,8 @@ pub fn picture(
 ) -> RgbImage {
     let view = camera.view(size, &scene.bounds());
     let depths = if style.needs_survey() { survey(scene, &view, progress) } else { None };
-    let Style { look, ref scheme, light, edges, .. } = *style;
-    let shader = Shader { scene, look, scheme, depths, edges, light };
+    let Style { look, ref scheme, light, edges, hatch, .. } = *style;
+    let shader = Shader { scene, look, scheme, depths, edges, light, hatch };
     let offsets = spread(style.samples.max(1));
     let factor = 1.0 / style.samples.max(1) as f32;
 

@@ -18,8 +18,15 @@ pub fn shade(scene: &Scene, frame: &Frame, look: Look, scheme: &Scheme) -> RgbIm
     let [width, height] = frame.size();
     let mut light = vec![Vec3::ZERO; width as usize * height as usize];
     let depths = frame.depths();
-    let shader =
-        Shader { scene, look, scheme, depths, edges: false, light: Light::Plain };
+    let shader = Shader {
+        scene,
+        look,
+        scheme,
+        depths,
+        edges: false,
+        light: Light::Plain,
+        hatch: false,
+    };
     shader.add(frame, frame.rows(), 0, &mut light);
     let mut image = RgbImage::new(width, height);
     write(&light, 1.0, &mut image);
@@ -44,7 +51,14 @@ pub(super) struct Shader<'a> {
     /// Whether lines are drawn where surfaces end or turn.
     pub(super) edges: bool,
     pub(super) light: Light,
+    /// Whether faces of half-spaces are hatched.
+    pub(super) hatch: bool,
 }
+
+/// Hatching: so many pixels from line to line, along a row; so much of that is line; so much of its
+/// light is left there.
+const HATCH: [f64; 2] = [9.0, 0.22];
+const ON_HATCH: f32 = 0.45;
 
 /// How much of its light is left to a pixel on an edge.
 const ON_EDGES: f32 = 0.12;
@@ -89,11 +103,22 @@ impl Shader<'_> {
         if let (Light::Soft { rays }, true) = (self.light, self.look.is_lit()) {
             seen.openness = openness(tracer, frame, at, &seen, rays, sample);
         }
-        let light = self.look.paint(&seen);
-        match self.edges && is_edge(self.scene, frame, at) {
-            true => ON_EDGES * light,
-            false => light,
+        let mut light = self.look.paint(&seen);
+        if self.hatch && self.look.is_lit() && self.is_hatched(frame, at, &hit) {
+            light *= ON_HATCH;
         }
+        if self.edges && is_edge(self.scene, frame, at) {
+            light *= ON_EDGES;
+        }
+        light
+    }
+
+    /// Whether a ray is on a line of the hatching of a section.
+    fn is_hatched(&self, frame: &Frame, [x, y]: [u32; 2], hit: &Crossing) -> bool {
+        let [right, down] = frame.in_view(x, y);
+        let [step, width] = HATCH;
+        let is_line = ((right + down) / step).rem_euclid(1.0) < width;
+        is_line && self.scene.leaf(hit.leaf).kind == "half-space"
     }
 
     fn seen(&self, frame: &Frame, x: u32, y: u32, hit: &Crossing) -> Seen {

@@ -1,0 +1,319 @@
+//! `solidray render`
+
+mod cut;
+mod scale;
+mod target;
+mod view;
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::bail;
+use clap::builder::PossibleValuesParser;
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+use solidray::render::{self, Camera, Light, Look, Scheme, Style, distinct_color};
+use solidray::{Op, Scene, Solid};
+
+use super::input::{Loaded, Reading};
+use super::meter::Meter;
+use super::output;
+use super::pieces::{By, hex, pieces};
+use super::{Answer, Global};
+use cut::Cut;
+use target::{Content, Target};
+use view::ViewArgs;
+
+/// Draw a picture
+///
+/// The view is OpenSCAD's: without --camera the whole model from the front, the right and
+/// above. `color()` is honoured; other surfaces are yellow, and green where they were cut.
+#[derive(Args, Debug)]
+pub(super) struct Render {
+    /// The model
+    file: PathBuf,
+    /// The picture to write, a .png; or - for standard output. Depths and thicknesses are written
+    /// as 32-bit numbers where it is a .tiff
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    #[command(flatten)]
+    view: ViewArgs,
+    /// Cut the model open: z=3 takes away what is on the viewer's side of that plane, A,B,C,D leaves what
+    /// has Ax + By + Cz ≤ D. May be given several times; the faces of cuts are hatched
+    #[arg(long, value_name = "PLANE", value_parser = Cut::parse, allow_hyphen_values = true, help_heading = "View")]
+    cut: Vec<Cut>,
+    /// What to show of surfaces
+    #[arg(long, value_enum, default_value_t = LookArg::Shaded, help_heading = "Looks")]
+    look: LookArg,
+    /// How many rays go through each pixel, spread evenly, for smooth edges
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Looks")]
+    samples: u32,
+    /// Where light comes from
+    #[arg(long, value_enum, default_value_t = LightArg::Plain, help_heading = "Looks")]
+    light: LightArg,
+    /// How many rays soft light takes for each ray from the eye
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Looks")]
+    light_rays: u32,
+    /// Draw dark lines along outlines, steps and creases
+    #[arg(long, help_heading = "Looks")]
+    edges: bool,
+    /// The colours of what has none, as OpenSCAD's schemes have them
+    #[arg(long, value_name = "SCHEME", value_parser = PossibleValuesParser::new(Scheme::ALL.map(|(name, _)| name)), ignore_case = true, default_value = Scheme::ALL[0].0, help_heading = "Looks")]
+    colorscheme: String,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+enum LookArg {
+    /// light and colours
+    Shaded,
+    /// directions of surfaces as red, green and blue
+    Normal,
+    /// near is white, far is dark
+    Depth,
+    /// a colour for each leaf
+    Leaf,
+    /// a colour for each object at the top of the model; -v and --json say which is whose
+    Object,
+    /// how much of the model the line of sight passes through, with a scale
+    Thickness,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum LightArg {
+    /// lamps that nothing stands in front of
+    Plain,
+    /// a lamp as wide as the sky: corners and holes are darker, and it takes longer
+    Soft,
+}
+
+#[derive(Serialize)]
+struct Report {
+    /// The first of them, if there are several.
+    output: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pictures: Option<u32>,
+    width: u32,
+    height: u32,
+    samples: u32,
+    rays: u64,
+    /// The objects that are told apart by their colours.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    objects: Vec<ObjectJson>,
+    /// The largest thickness in any pixel, or the least and the largest depth.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    range: Option<[f32; 2]>,
+    seconds: Seconds,
+}
+
+#[derive(Serialize)]
+struct ObjectJson {
+    name: String,
+    color: String,
+}
+
+#[derive(Serialize)]
+struct Seconds {
+    read: f64,
+    compile: f64,
+    trace: f64,
+    write: f64,
+}
+
+/// What pictures of numbers show.
+#[derive(Clone, Copy, Debug)]
+enum Numbers {
+    Depths,
+    Thicknesses,
+}
+
+impl Render {
+    pub(super) fn run(
+        &self,
+        global: Global,
+        out: &mut dyn Write,
+    ) -> anyhow::Result<Answer> {
+        let target = Target::new(&self.output, self.view.turntable)?;
+        if target.is_standard_output() && global.json {
+            bail!("standard output cannot take both the picture and --json");
+        }
+        if target.takes_numbers()
+            && !matches!(self.look, LookArg::Depth | LookArg::Thickness)
+        {
+            bail!("only --look depth and --look thickness are written as .tiff");
+        }
+        let mut objects = Vec::new();
+        let change = |solid: Solid| match self.look == LookArg::Object {
+            true => colored(&solid, &mut objects),
+            false => solid,
+        };
+        let (loaded, solid) = self.reading.load_changed(&self.file, global, change)?;
+        let Loaded { scene: whole, read_seconds, compile_seconds } = loaded;
+        let camera = self.view.camera(&whole.bounds());
+        let scene = match self.is_cut() {
+            true => self.opened(&solid, &whole, &camera)?,
+            false => whole,
+        };
+        drop(solid);
+
+        let (mut trace, mut write, mut range) = (0.0, 0.0, None);
+        let pictures = self.view.turntable.unwrap_or(1);
+        let rays = self.rays(&target).saturating_mul(pictures.into());
+        let meter = Meter::new(global, "tracing", Some(rays));
+        for index in 0..pictures {
+            let start = Instant::now();
+            let camera = turned(camera, index, pictures);
+            let content = self.draw(&scene, &camera, &target, &meter, &mut range)?;
+            trace += start.elapsed().as_secs_f64();
+            let start = Instant::now();
+            target.write(index, content, out)?;
+            write += start.elapsed().as_secs_f64();
+        }
+        drop(meter);
+
+        let seconds =
+            Seconds { read: read_seconds, compile: compile_seconds, trace, write };
+        if global.json {
+            let [width, height] = self.view.imgsize;
+            let report = Report {
+                output: target.name(0).display().to_string(),
+                pictures: self.view.turntable,
+                width,
+                height,
+                samples: self.samples,
+                rays,
+                objects,
+                range,
+                seconds,
+            };
+            output::json(out, report)?;
+        } else if global.verbose {
+            let Seconds { read, compile, trace, write } = seconds;
+            super::report::note(&format!(
+                "{rays} rays; seconds: read {read:.3}, compile {compile:.3}, trace {trace:.3}, write {write:.3}"
+            ));
+            if let Some([least, most]) = range {
+                super::report::note(&format!("from {least} to {most}"));
+            }
+            for ObjectJson { name, color } in objects {
+                super::report::note(&format!("{color} is {name}"));
+            }
+        }
+        Ok(Answer::Yes)
+    }
+
+    fn is_cut(&self) -> bool {
+        !self.cut.is_empty()
+    }
+
+    /// The scene of the model cut open.
+    fn opened(
+        &self,
+        solid: &Solid,
+        whole: &Scene,
+        camera: &Camera,
+    ) -> anyhow::Result<Scene> {
+        let [_, _, forward] = camera.view(self.view.imgsize, &whole.bounds()).axes();
+        let cuts = self.cut.iter();
+        let open = cuts.fold(solid.clone(), |solid, cut| cut.applied(&solid, forward));
+        Ok(self.reading.compile(&self.file, &open)?)
+    }
+
+    fn style(&self) -> Style {
+        Style {
+            look: match self.look {
+                LookArg::Normal => Look::Normal,
+                LookArg::Depth => Look::Depth,
+                LookArg::Leaf => Look::Leaf,
+                LookArg::Shaded | LookArg::Object | LookArg::Thickness => Look::Shaded,
+            },
+            scheme: Scheme::named(&self.colorscheme).unwrap_or_default(),
+            samples: self.samples,
+            light: match self.light {
+                LightArg::Plain => Light::Plain,
+                LightArg::Soft => Light::Soft { rays: self.light_rays },
+            },
+            edges: self.edges,
+            hatch: self.is_cut(),
+        }
+    }
+
+    /// The numbers that are found before any colour, if there are any.
+    fn numbers(&self, target: &Target) -> Option<Numbers> {
+        match self.look {
+            LookArg::Thickness => Some(Numbers::Thicknesses),
+            LookArg::Depth if target.takes_numbers() => Some(Numbers::Depths),
+            LookArg::Shaded
+            | LookArg::Normal
+            | LookArg::Depth
+            | LookArg::Leaf
+            | LookArg::Object => None,
+        }
+    }
+
+    /// How many rays from the eye one picture takes.
+    fn rays(&self, target: &Target) -> u64 {
+        let [width, height] = self.view.imgsize.map(u64::from);
+        match self.numbers(target) {
+            Some(Numbers::Thicknesses) => width * height * u64::from(self.samples),
+            Some(Numbers::Depths) => width * height,
+            None => self.style().rays(self.view.imgsize),
+        }
+    }
+
+    /// One picture, or its numbers, whose range is joined to that of those before.
+    fn draw(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        target: &Target,
+        meter: &Meter,
+        range: &mut Option<[f32; 2]>,
+    ) -> anyhow::Result<Content> {
+        let size = self.view.imgsize;
+        let progress = |n| meter.tick(n);
+        let numbers = match self.numbers(target) {
+            Some(Numbers::Thicknesses) => {
+                render::thickness(scene, camera, size, self.samples, &progress)
+            }
+            Some(Numbers::Depths) => render::depth(scene, camera, size, &progress),
+            None => {
+                let style = self.style();
+                let picture = render::picture(scene, camera, size, &style, &progress);
+                return Ok(Content::Picture(picture));
+            }
+        };
+        let extremes = |[a, b]: [f32; 2], [c, d]: [f32; 2]| [a.min(c), b.max(d)];
+        let seen = numbers.iter().filter(|n| n.is_finite()).map(|&n| [n, n]);
+        let seen = seen.reduce(extremes);
+        *range = seen.into_iter().chain(*range).reduce(extremes);
+        if target.takes_numbers() {
+            return Ok(Content::Numbers { size, numbers });
+        }
+        let [_, most] = seen.unwrap_or_default();
+        let mut image = render::heat(&numbers, size, most);
+        scale::draw_scale(&mut image, most)?;
+        Ok(Content::Picture(image))
+    }
+}
+
+/// A camera that has gone so far around the model.
+fn turned(camera: Camera, index: u32, pictures: u32) -> Camera {
+    let mut rotation_deg = camera.rotation_deg;
+    // The model turns to the right, as on a turntable: the camera goes the other way.
+    rotation_deg.z -= 360.0 * f64::from(index) / f64::from(pictures);
+    Camera { rotation_deg, ..camera }
+}
+
+/// The solid with a colour for each object at its top, and which is whose.
+fn colored(solid: &Solid, names: &mut Vec<ObjectJson>) -> Solid {
+    let objects = (0..).zip(pieces(solid, By::Objects));
+    let colored = objects.map(|(number, (name, object))| {
+        let color = distinct_color(number);
+        names.push(ObjectJson { name, color: hex(color) });
+        object.colored(color)
+    });
+    Solid::boolean(Op::Union, colored)
+}

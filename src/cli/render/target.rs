@@ -1,0 +1,104 @@
+//! Where pictures go.
+
+use std::io::{Cursor, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use image::{ImageFormat, RgbImage};
+use tiff::encoder::{TiffEncoder, colortype::Gray32Float};
+
+use super::super::output;
+
+/// The file or the files that are written.
+pub(super) struct Target {
+    path: PathBuf,
+    format: Format,
+    /// How many pictures there are, if they are numbered.
+    count: Option<u32>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    /// Colours in 8 bits.
+    Png,
+    /// Numbers in 32 bits.
+    Tiff,
+}
+
+/// What is written.
+pub(super) enum Content {
+    Picture(RgbImage),
+    /// Row by row from the upper left.
+    Numbers {
+        size: [u32; 2],
+        numbers: Vec<f32>,
+    },
+}
+
+impl Target {
+    /// Refuses what would only be found out after the work.
+    pub(super) fn new(path: &Path, count: Option<u32>) -> anyhow::Result<Self> {
+        let is_standard_output = path.as_os_str() == "-";
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        let format = match extension.as_deref() {
+            _ if is_standard_output => Format::Png,
+            Some("png") => Format::Png,
+            Some("tif" | "tiff") => Format::Tiff,
+            _ => bail!(
+                "{}: pictures are written as .png, and depths and thicknesses as .tiff as well",
+                path.display()
+            ),
+        };
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+            bail!("{}: there is no folder {}", path.display(), folder.display());
+        }
+        if is_standard_output && count.is_some() {
+            bail!("standard output takes one picture, not those of a turntable");
+        }
+        Ok(Self { path: path.to_owned(), format, count })
+    }
+
+    pub(super) fn is_standard_output(&self) -> bool {
+        self.path.as_os_str() == "-"
+    }
+
+    /// Whether numbers are wanted and not colours.
+    pub(super) fn takes_numbers(&self) -> bool {
+        self.format == Format::Tiff
+    }
+
+    /// The name of one of the pictures.
+    pub(super) fn name(&self, index: u32) -> PathBuf {
+        let Some(count) = self.count else { return self.path.clone() };
+        let digits = (count - 1).to_string().len().max(3);
+        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
+        let extension = self.path.extension().unwrap_or_default().to_string_lossy();
+        self.path.with_file_name(format!("{stem}-{index:0digits$}.{extension}"))
+    }
+
+    /// Writes one of the pictures, whole or not at all.
+    pub(super) fn write(
+        &self,
+        index: u32,
+        content: Content,
+        out: &mut dyn Write,
+    ) -> anyhow::Result<()> {
+        let mut bytes = Cursor::new(Vec::new());
+        match content {
+            Content::Picture(picture) => {
+                picture.write_to(&mut bytes, ImageFormat::Png).context("the picture")?;
+            }
+            Content::Numbers { size: [width, height], numbers } => {
+                let mut tiff = TiffEncoder::new(&mut bytes).context("the picture")?;
+                tiff.write_image::<Gray32Float>(width, height, &numbers)
+                    .context("the picture")?;
+            }
+        }
+        if self.is_standard_output() {
+            Ok(out.write_all(bytes.get_ref())?)
+        } else {
+            output::save(&self.name(index), bytes.get_ref())
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Where the model is looked at from.
+
+use clap::Args;
+use solidray::Aabb;
+use solidray::render::{Camera, Projection};
+
+use super::super::numbers;
+
+/// Options of the view; they mean what they mean in OpenSCAD.
+#[derive(Args, Debug)]
+pub(super) struct ViewArgs {
+    /// Width and height in pixels
+    #[arg(long, value_name = "W,H", default_value = "1024,768", value_parser = size, help_heading = "View")]
+    pub(super) imgsize: [u32; 2],
+    /// Where to look from: x,y,z, turned by rx,ry,rz degrees, from distance d; or from the
+    /// eye ex,ey,ez to the centre cx,cy,cz
+    #[arg(long, value_name = "NUMBERS", value_parser = camera, help_heading = "View")]
+    camera: Option<Camera>,
+    /// o or orthogonal: parallel rays; p or perspective: rays from the eye
+    #[arg(long, value_name = "o|p", value_parser = projection, default_value = "p", hide_default_value = true, help_heading = "View")]
+    projection: Projection,
+    /// Choose the distance so that everything is in view [default without --camera]
+    #[arg(long, help_heading = "View")]
+    viewall: bool,
+    /// Look at the centre of the model [default without --camera]
+    #[arg(long, help_heading = "View")]
+    autocenter: bool,
+    /// Draw so many pictures while the model turns once: OUT-000.png, OUT-001.png and so on
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "View")]
+    pub(super) turntable: Option<u32>,
+}
+
+/// The largest picture, in pixels.
+const MOST_PIXELS: u64 = 1 << 28;
+
+impl ViewArgs {
+    /// The camera that was asked for, or one that shows everything.
+    pub(super) fn camera(&self, bounds: &Aabb) -> Camera {
+        let camera = match self.camera {
+            None => Camera::framing(bounds),
+            Some(camera) => {
+                let centered =
+                    if self.autocenter { camera.autocenter(bounds) } else { camera };
+                if self.viewall { centered.view_all(bounds) } else { centered }
+            }
+        };
+        camera.with_projection(self.projection)
+    }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let parts: Result<Vec<u32>, _> =
+        text.split([',', 'x']).map(|n| n.trim().parse()).collect();
+    match parts.as_deref() {
+        Ok(&[w, h]) if w > 0 && h > 0 => {
+            if u64::from(w) * u64::from(h) > MOST_PIXELS {
+                return Err(format!("{w} × {h} is more than {MOST_PIXELS} pixels"));
+            }
+            Ok([w, h])
+        }
+        _ => Err(format!("`{text}` is not a width and a height, as in 800,600")),
+    }
+}
+
+fn camera(text: &str) -> Result<Camera, String> {
+    let numbers = numbers::list(text).map_err(|error| error.to_string())?;
+    Camera::from_numbers(&numbers).map_err(|error| error.to_string())
+}
+
+fn projection(text: &str) -> Result<Projection, String> {
+    match text {
+        "o" | "ortho" | "orthogonal" | "orthographic" => Ok(Projection::Orthographic),
+        "p" | "perspective" => Ok(Projection::Perspective),
+        _ => Err(format!("`{text}` is neither o (orthogonal) nor p (perspective)")),
+    }
+}
