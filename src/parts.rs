@@ -106,13 +106,16 @@ impl Solid {
 
     /// The operands of the topmost union that has several, in the order of the file, and where each
     /// stands, or the first leaf in it, if that is known; the solid itself if there is no such union
-    /// at the top.
+    /// at the top, or only one within what counts as one leaf by [`Solid::as_outline`].
     pub fn objects(&self) -> Vec<(Option<Place>, Self)> {
         let mut around: Vec<Around<'_>> = Vec::new();
         let (mut top, mut outer) = (self, None);
         loop {
             let step = match (top.kind(), top.children()) {
                 (Kind::Mapped(map), [_]) => Step::Mapped(map),
+                (Kind::Tagged(Tag::Outline), _) => {
+                    return vec![(self.place(), self.clone())];
+                }
                 (Kind::Tagged(tag), [_]) => Step::Tagged(tag),
                 // One operand is the same under any operator.
                 (Kind::Boolean(_), [_]) => Step::With(Op::Union, &[]),
@@ -227,6 +230,7 @@ mod tests {
         for (_, object) in &objects {
             assert!(matches!(object.kind(), Kind::Mapped(_)), "it is moved as all are");
         }
+        assert_eq!(both.clone().as_outline().objects().len(), 1);
         assert_eq!((both - a).objects().len(), 1);
     }
 
