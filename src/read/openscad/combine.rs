@@ -120,7 +120,7 @@ impl Alike {
     }
 
     /// One shape of many; none of none.
-    fn joined(self, op: Op) -> Shape {
+    pub(super) fn joined(self, op: Op) -> Shape {
         match self {
             Self::Flat(mut outlines) if outlines.len() < 2 => {
                 outlines.pop().map_or(Shape::Empty, Shape::Flat)

@@ -1,8 +1,11 @@
 //! `hull` and `minkowski`.
 //!
-//! There is no exact solid for most of them: true curves become fine polyhedra first.
+//! Hulls of circles, of balls and of plates are exact. There is no exact solid for most of the others:
+//! their true curves become fine polyhedra first.
 
 use super::super::error::{Located, ReadErrorKind};
+use super::super::hull;
+use super::super::options::Curves;
 use super::super::outline::{self, Outline, Paths};
 use super::arguments::Call;
 use super::combine::{Alike, quoted};
@@ -15,14 +18,23 @@ use crate::op::Op;
 use crate::shape::Primitive;
 use crate::solid::{Kind, Solid, Tag};
 
-/// The convex hull of all children.
+/// The convex hull of all children. Within another hull these do as they are.
 pub(super) fn hull(
     call: &Call<'_>,
     children: Vec<Shape>,
     reading: &mut Reading<'_>,
 ) -> Result<Shape, Located> {
-    match Alike::new(children, &quoted(call), call.place(), reading) {
+    let alike = Alike::new(children, &quoted(call), call.place(), reading);
+    if reading.is_hulled && reading.options.curves != Curves::Faceted {
+        return Ok(alike.joined(Op::Union));
+    }
+    match alike {
         Alike::Flat(outlines) => {
+            if !reading.is_faceted
+                && let Some(hull) = outline::exact_hull(&outlines)
+            {
+                return Ok(Shape::Flat(hull.tagged(Tag::Place(call.place()))));
+            }
             let paths = outlines.iter().flat_map(|o| polygons(o, reading));
             let points = paths.flatten().collect::<Vec<_>>();
             Ok(flat(vec![outline::hull(points)], call))
@@ -34,6 +46,11 @@ pub(super) fn hull(
                 return Ok(solids.pop().map_or(Shape::Empty, Shape::Solid));
             }
             let all = Solid::boolean(Op::Union, solids);
+            if !reading.is_faceted
+                && let Some(hull) = exact_hull(&all, call, reading)?
+            {
+                return Ok(Shape::Solid(hull.placed(call.place()).as_outline()));
+            }
             let parts = parts(&all, call, reading)?;
             let corners = |mesh: &Mesh| mesh.points().to_vec();
             let points: Vec<_> = parts.iter().flat_map(corners).collect();
@@ -41,6 +58,25 @@ pub(super) fn hull(
             solid(hull.into_iter().collect(), call, reading)
         }
     }
+}
+
+/// The hull of solids that have an exact one.
+fn exact_hull(
+    solid: &Solid,
+    call: &Call<'_>,
+    reading: &mut Reading<'_>,
+) -> Result<Option<Solid>, Located> {
+    let hull = fine(reading, |fine| hull::exact(solid, fine));
+    let hull = hull.map_err(|e| fault(call, e))?;
+    let (mut triangles, mut open) = (0, Vec::from_iter(&hull));
+    while let Some(solid) = open.pop() {
+        if let Kind::Mesh(mesh) = solid.kind() {
+            triangles += mesh.faces().len() as u64;
+        }
+        open.extend(solid.children());
+    }
+    reading.count_facets(triangles, call.place())?;
+    Ok(hull)
 }
 
 /// The sum of all children: the points that are sums of a point of each.

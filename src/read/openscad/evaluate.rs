@@ -48,6 +48,9 @@ pub(super) struct Reading<'a> {
     pub(super) is_hulled: bool,
     /// Whether facets stand for curves in what is being made.
     pub(super) is_fine: Cell<bool>,
+    /// Whether what is being made becomes polygons or polyhedra by a node around it, so that it had
+    /// better be one of them from the start.
+    pub(super) is_faceted: bool,
 }
 
 impl Reading<'_> {
@@ -80,6 +83,8 @@ struct Frame {
     children: Vec<Shape>,
     /// Whether only the hull of its children matters.
     hulls: bool,
+    /// Whether its children become polygons or polyhedra.
+    facets: bool,
 }
 
 /// The model that a document describes.
@@ -104,6 +109,7 @@ pub(super) fn model(
         left_out: None,
         is_hulled: false,
         is_fine: Cell::new(false),
+        is_faceted: false,
     };
     let (next, end) = content(document);
     let shapes = shapes(document, next, end, &mut reading)?;
@@ -159,6 +165,7 @@ fn shapes(
             let call = Call { document, statement, parameters };
             call.warn_of_unknown(reading);
             reading.is_hulled = open.last().is_some_and(|frame| frame.hulls);
+            reading.is_faceted = open.last().is_some_and(|frame| frame.facets);
             let shape = match (frame.node.make)(&call, frame.children, reading) {
                 Err(Located { kind: ReadErrorKind::Unsupported(what), .. }) => {
                     elsewhere::evaluated(document, frame.statement, what, reading)?
@@ -197,7 +204,11 @@ fn shapes(
             }
             _ => false,
         };
-        open.push(Frame { node, statement: next, children: Vec::new(), hulls });
+        let facets = match statement.name {
+            "minkowski" | "offset" | "projection" => true,
+            _ => open.last().is_some_and(|frame| frame.facets),
+        };
+        open.push(Frame { node, statement: next, children: Vec::new(), hulls, facets });
         next += 1;
     }
 }

@@ -6,6 +6,7 @@
 //!            └─ paths: simple polygons, circles fine ones ──► revolve: pieces of cones
 //! ```
 
+mod discs;
 mod extrude;
 mod hull;
 mod offset;
@@ -20,6 +21,7 @@ use glam::{DAffine2, DVec2};
 use crate::op::Op;
 use crate::solid::Tag;
 
+pub(super) use discs::{Disc, exact_hull, hull_of_discs};
 pub(super) use extrude::Extrusion;
 pub(super) use hull::{hull, sum};
 pub(super) use offset::{Join, offset, offset_with_arcs};

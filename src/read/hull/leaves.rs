@@ -1,0 +1,106 @@
+//! What a hull is taken of.
+
+use glam::{DAffine3, DVec3};
+
+use super::super::similar;
+use super::balls::Ball;
+use crate::aabb::Aabb;
+use crate::facets::{self, FacetsError, Fine};
+use crate::op::Op;
+use crate::shape::{Primitive, Profile};
+use crate::solid::{Kind, Solid};
+
+/// A part of a union.
+#[derive(Clone, Debug)]
+pub(super) enum Leaf {
+    Ball(Ball),
+    /// About the z-axis of its own frame, under a map.
+    Cylinder {
+        radius: f64,
+        ends: [f64; 2],
+        map: DAffine3,
+    },
+    /// The corners of a polyhedron.
+    Points(Vec<DVec3>),
+}
+
+/// The parts of a union of balls, cylinders and polyhedra; `None` if there are others, or no
+/// curves.
+///
+/// # Errors
+///
+/// If polyhedra cannot be cut.
+pub(super) fn leaves(
+    solid: &Solid,
+    fine: &Fine<'_>,
+) -> Result<Option<Vec<Leaf>>, FacetsError> {
+    let mut found = Vec::new();
+    let mut has_curves = false;
+    let mut open = vec![(solid, DAffine3::IDENTITY)];
+    while let Some((solid, map)) = open.pop() {
+        let children = solid.children();
+        match solid.kind() {
+            Kind::Mapped(own) => {
+                open.extend(children.iter().map(|child| (child, map * **own)));
+            }
+            Kind::Boolean(op) if *op != Op::Union && children.len() > 1 => {
+                if !is_polyhedral(solid) {
+                    return Ok(None);
+                }
+                let parts = facets::parts(solid, fine)?;
+                let corners = parts.iter().flat_map(|mesh| mesh.points());
+                found.push(points(corners.copied(), &map));
+            }
+            Kind::Boolean(_) | Kind::Tagged(_) => {
+                open.extend(children.iter().map(|child| (child, map)));
+            }
+            Kind::Mesh(mesh) => found.push(points(mesh.points().iter().copied(), &map)),
+            Kind::Primitive(Primitive::Cuboid { min, max }) => {
+                found.push(points(Aabb::new(*min, *max).corners().into_iter(), &map));
+            }
+            Kind::Primitive(primitive) => {
+                let Some(leaf) = curve(primitive, map) else { return Ok(None) };
+                found.push(leaf);
+                has_curves = true;
+            }
+        }
+    }
+    Ok(has_curves.then_some(found))
+}
+
+fn points(points: impl Iterator<Item = DVec3>, map: &DAffine3) -> Leaf {
+    Leaf::Points(points.map(|p| map.transform_point3(p)).collect())
+}
+
+/// A whole ball or a cylinder.
+fn curve(primitive: &Primitive, map: DAffine3) -> Option<Leaf> {
+    match *primitive {
+        Primitive::Quadric { profile: Profile::Ball { radius }, bottom, top }
+            if bottom <= -radius && top >= radius =>
+        {
+            let radius = radius * similar::scale(&map.matrix3)?;
+            Some(Leaf::Ball(Ball { center: map.translation, radius }))
+        }
+        Primitive::Quadric { profile: Profile::Cylinder { radius }, bottom, top } => {
+            Some(Leaf::Cylinder { radius, ends: [bottom, top], map })
+        }
+        Primitive::Quadric { .. }
+        | Primitive::Cuboid { .. }
+        | Primitive::HalfSpace { .. } => None,
+    }
+}
+
+/// Whether a solid is made of boxes and meshes.
+fn is_polyhedral(solid: &Solid) -> bool {
+    let mut open = vec![solid];
+    while let Some(solid) = open.pop() {
+        if matches!(
+            solid.kind(),
+            Kind::Primitive(Primitive::Quadric { .. } | Primitive::HalfSpace { .. })
+        ) {
+            return false;
+        }
+        open.extend(solid.children());
+    }
+    true
+}
