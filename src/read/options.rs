@@ -24,7 +24,7 @@ pub struct ReadOptions {
     /// ask for any number. One takes some 130 bytes.
     pub max_facets: u64,
     /// How far facets may be from true curves where curves have no exact solid (in twisted
-    /// extrusions, hulls, sums, and circles that are turned about an axis), in model units.
+    /// extrusions, most hulls, sums, and circles that are turned about an axis), in model units.
     pub facet_tolerance: f64,
     /// The thickness that plane models get, from z = 0 up; without one they are refused.
     pub plate: Option<f64>,
