@@ -48,7 +48,7 @@ pub(super) fn pieces(solid: &Solid, by: By) -> Vec<(String, Solid)> {
 }
 
 /// What a part is called: its name, or else its colour.
-fn label(part: &Part) -> String {
+pub(super) fn label(part: &Part) -> String {
     if let Some(name) = &part.name {
         return name.to_string();
     }

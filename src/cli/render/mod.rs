@@ -25,6 +25,8 @@ use cut::Cut;
 use target::{Content, Target};
 use view::ViewArgs;
 
+pub(super) use view::{camera, projection};
+
 /// Draw a picture
 ///
 /// The view is OpenSCAD's: without --camera the whole model from the front, the right and

@@ -62,12 +62,14 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-fn camera(text: &str) -> Result<Camera, String> {
+/// The camera of OpenSCAD's option `--camera`.
+pub(in super::super) fn camera(text: &str) -> Result<Camera, String> {
     let numbers = numbers::list(text).map_err(|error| error.to_string())?;
     Camera::from_numbers(&numbers).map_err(|error| error.to_string())
 }
 
-fn projection(text: &str) -> Result<Projection, String> {
+/// The projection of OpenSCAD's option `--projection`.
+pub(in super::super) fn projection(text: &str) -> Result<Projection, String> {
     match text {
         "o" | "ortho" | "orthogonal" | "orthographic" => Ok(Projection::Orthographic),
         "p" | "perspective" => Ok(Projection::Perspective),

@@ -1,40 +1,15 @@
-//! `solidray ray`
+//! A ray's spans in words, and as one JSON object.
 
 use std::io::Write;
-use std::path::PathBuf;
 
-use anyhow::bail;
-use clap::Args;
-use glam::DVec3;
 use serde::Serialize;
 use solidray::{Crossing, Ray, Scene, Span};
 
-use super::input::{Reading, lines_of_numbers};
-use super::numbers::Numbers;
-use super::output::{self, point};
-use super::{Answer, Global};
-
-/// List the stretches of rays inside the solid
-///
-/// The whole line counts, before its origin too; t is in multiples of the direction, which
-/// may have any length. Without --origin and --dir, rays are read from standard input: six
-/// numbers on a line, origin and direction.
-#[derive(Args, Debug)]
-pub(super) struct Rays {
-    /// The model
-    file: PathBuf,
-    /// Where the ray starts
-    #[arg(long, value_name = "X,Y,Z", requires = "dir")]
-    origin: Option<Numbers<3>>,
-    /// Where it goes
-    #[arg(long, value_name = "X,Y,Z", requires = "origin")]
-    dir: Option<Numbers<3>>,
-    #[command(flatten)]
-    reading: Reading,
-}
+use super::super::Global;
+use super::super::output::point;
 
 #[derive(Serialize)]
-struct RayJson {
+pub(super) struct RayJson {
     origin: [f64; 3],
     dir: [f64; 3],
     spans: Vec<SpanJson>,
@@ -66,38 +41,6 @@ struct CrossingJson {
     column: Option<u32>,
 }
 
-impl Rays {
-    pub(super) fn run(
-        &self,
-        global: Global,
-        out: &mut dyn Write,
-    ) -> anyhow::Result<Answer> {
-        if self.origin.is_none() && self.file.as_os_str() == "-" {
-            bail!("standard input cannot be both the model and the list");
-        }
-        let scene = self.reading.load(&self.file, global)?.scene;
-        let mut tracer = scene.tracer();
-        let mut each = |ray: Ray| -> anyhow::Result<()> {
-            if !ray.is_valid() {
-                bail!("the direction is zero");
-            }
-            let spans = tracer.spans(&ray);
-            if global.json {
-                output::json(out, RayJson::new(&scene, &ray, spans))
-            } else {
-                print(out, &scene, &ray, spans, global)
-            }
-        };
-        match (self.origin, self.dir) {
-            (Some(origin), Some(dir)) => each(Ray::new(origin.into(), dir.into()))?,
-            _ => lines_of_numbers(|[a, b, c, d, e, f]| {
-                each(Ray::new(DVec3::new(a, b, c), DVec3::new(d, e, f)))
-            })?,
-        }
-        Ok(Answer::Yes)
-    }
-}
-
 fn chord(ray: &Ray, span: &Span) -> f64 {
     span.length() * ray.speed()
 }
@@ -107,7 +50,7 @@ fn total(ray: &Ray, spans: &[Span]) -> f64 {
     spans.iter().fold(0.0, |sum, span| sum + chord(ray, span))
 }
 
-fn print(
+pub(super) fn print(
     out: &mut dyn Write,
     scene: &Scene,
     ray: &Ray,
@@ -160,7 +103,7 @@ fn in_words(scene: &Scene, ray: &Ray, crossing: &Crossing) -> String {
 }
 
 impl RayJson {
-    fn new(scene: &Scene, ray: &Ray, spans: &[Span]) -> Self {
+    pub(super) fn new(scene: &Scene, ray: &Ray, spans: &[Span]) -> Self {
         let crossing = |c: &Crossing| {
             let leaf = scene.leaf(c.leaf);
             CrossingJson {
