@@ -23,6 +23,7 @@ mod report;
 mod sampling;
 mod tradeoff;
 mod volume;
+mod watch;
 
 use std::ffi::OsString;
 use std::io::{self, Write};

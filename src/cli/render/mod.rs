@@ -20,6 +20,7 @@ use super::input::{Loaded, Reading};
 use super::meter::Meter;
 use super::output;
 use super::pieces::{By, hex, pieces};
+use super::watch::watch;
 use super::{Answer, Global};
 use cut::Cut;
 use target::{Content, Target};
@@ -63,6 +64,9 @@ pub(super) struct Render {
     /// The colours of what has none, as OpenSCAD's schemes have them
     #[arg(long, value_name = "SCHEME", value_parser = PossibleValuesParser::new(Scheme::ALL.map(|(name, _)| name)), ignore_case = true, default_value = Scheme::ALL[0].0, help_heading = "Looks")]
     colorscheme: String,
+    /// Draw again whenever the file changes, or a model or drawing in its folder, until Ctrl-C
+    #[arg(long)]
+    watch: bool,
     #[command(flatten)]
     reading: Reading,
 }
@@ -138,6 +142,29 @@ impl Render {
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
         let target = Target::new(&self.output, self.view.turntable)?;
+        if !self.watch {
+            return self.drawn(&target, global, out);
+        }
+        if self.file.as_os_str() == "-" || target.is_standard_output() {
+            bail!("--watch needs a file to read and a file to write, not -");
+        }
+        watch(&self.file, || {
+            self.drawn(&target, global, out)?;
+            if !global.quiet {
+                let output = self.output.display();
+                super::report::note(&format!("{output} is drawn; Ctrl-C ends"));
+            }
+            Ok(out.flush()?)
+        })
+    }
+
+    /// Draws all pictures once.
+    fn drawn(
+        &self,
+        target: &Target,
+        global: Global,
+        out: &mut dyn Write,
+    ) -> anyhow::Result<Answer> {
         if target.is_standard_output() && global.json {
             bail!("standard output cannot take both the picture and --json");
         }
@@ -162,12 +189,12 @@ impl Render {
 
         let (mut trace, mut write, mut range) = (0.0, 0.0, None);
         let pictures = self.view.turntable.unwrap_or(1);
-        let rays = self.rays(&target).saturating_mul(pictures.into());
+        let rays = self.rays(target).saturating_mul(pictures.into());
         let meter = Meter::new(global, "tracing", Some(rays));
         for index in 0..pictures {
             let start = Instant::now();
             let camera = turned(camera, index, pictures);
-            let content = self.draw(&scene, &camera, &target, &meter, &mut range)?;
+            let content = self.draw(&scene, &camera, target, &meter, &mut range)?;
             trace += start.elapsed().as_secs_f64();
             let start = Instant::now();
             target.write(index, content, out)?;
