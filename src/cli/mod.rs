@@ -8,6 +8,7 @@
 
 mod check;
 mod compare;
+mod completions;
 mod contains;
 mod input;
 mod interrupt;
@@ -101,6 +102,8 @@ enum Command {
     Compare(compare::Compare),
     Overlaps(overlaps::Overlaps),
     Tradeoff(tradeoff::Tradeoff),
+    Completions(completions::Completions),
+    Man(completions::ManPage),
 }
 
 /// What a command that could be done answers.
@@ -123,6 +126,8 @@ impl Command {
             Self::Compare(command) => command.run(global, out),
             Self::Overlaps(command) => command.run(global, out),
             Self::Tradeoff(command) => command.run(global, out),
+            Self::Completions(command) => command.run(out),
+            Self::Man(command) => command.run(out),
         }
     }
 }
