@@ -132,7 +132,10 @@ fn faults_of_faces_are_named() {
     let (points, mut faces) = bracket();
     faces[3] = vec![1, 2];
     let error = Mesh::from_polygons(points.clone(), &faces).unwrap_err();
-    assert_eq!(error.to_string(), "face 3 has 2 corners");
+    assert_eq!(
+        error.to_string(),
+        "face 3 has 2 corners; faces are counted from 0 and have at least 3"
+    );
     faces[3] = vec![1, 2, 99];
     let error = Mesh::from_polygons(points, &faces).unwrap_err();
     assert_eq!(error.to_string(), "face 3 names point 99, but there are 12 points");

@@ -508,16 +508,36 @@ fn points_listed_several_times_are_kept_once() {
 #[test]
 fn refused_meshes_are_located() {
     for (text, format, expected) in [
-        ("#\nv 1 2", Format::Obj, ":2:1: no line of an .obj file: position parse error"),
-        ("v 1 2 x", Format::Obj, ":1:1: no line of an .obj file: position parse error"),
+        (
+            "#\nv 1 2",
+            Format::Obj,
+            ":2:1: expected `v` and three numbers, as in `v 1 0.5 -2`",
+        ),
+        (
+            "v 1 2 x",
+            Format::Obj,
+            ":1:1: expected `v` and three numbers, as in `v 1 0.5 -2`",
+        ),
         (
             "v 1 2 3\nf 1 a 2",
             Format::Obj,
-            ":2:1: no line of an .obj file: face parse error",
+            ":2:1: expected `f` and the numbers of points, as in `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`",
         ),
-        ("v 1 2 3\nf 1 1", Format::Obj, ": face 0 has 2 corners"),
-        ("v 1 2 3\nf 1 1 2", Format::Obj, ": a face names a point that does not exist"),
-        ("v 1 2 3\nf 0 1 1", Format::Obj, ": a face names a point that does not exist"),
+        (
+            "v 1 2 3\nf 1 1",
+            Format::Obj,
+            ": face 0 has 2 corners; faces are counted from 0 and have at least 3",
+        ),
+        (
+            "v 1 2 3\nf 1 1 2",
+            Format::Obj,
+            ":2:1: a face names a point that is not in the file; the first `v` is 1, and -1 the last one before the face",
+        ),
+        (
+            "v 1 2 3\nf 0 1 1",
+            Format::Obj,
+            ":2:1: a face names a point that is not in the file; the first `v` is 1, and -1 the last one before the face",
+        ),
         ("v 1 2 3", Format::Obj, ": the mesh has no faces"),
         ("COFF 1 2 3", Format::Off, ":1:1: the format `COFF` is not supported yet"),
         ("PLY", Format::Off, ":1:1: expected `OFF`, found `PLY`"),
@@ -814,7 +834,8 @@ fn counts_without_content_cost_nothing() {
     let obj = "v 0 0 0\nf 1 2 4294967295\n";
     assert_eq!(
         refused(obj, Format::Obj),
-        "part.x: a face names a point that does not exist"
+        "part.x:2:1: a face names a point that is not in the file; the first `v` is 1, and -1 the \
+         last one before the face"
     );
     for text in ["OFF 4294967295 4294967295 4294967295\n", "OFF 0 1 0\n4294967295 0 0\n"]
     {

@@ -10,6 +10,7 @@ mod check;
 mod compare;
 mod completions;
 mod contains;
+mod excerpt;
 mod input;
 mod interrupt;
 mod measure;

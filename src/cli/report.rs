@@ -4,9 +4,14 @@ use std::io::{self, Write};
 
 use solidray::read::Warning;
 
-/// Why the program could not do what it was asked.
+use super::excerpt;
+
+/// Why the program could not do what it was asked, and the line of the file at fault.
 pub(super) fn error(error: &anyhow::Error) {
     say(&format!("solidray: error: {error:#}"));
+    if let Some(lines) = excerpt::of(error) {
+        say(&lines);
+    }
 }
 
 /// Something the user should know though it stopped nothing.

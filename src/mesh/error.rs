@@ -23,7 +23,9 @@ pub enum MeshError {
         count: usize,
     },
     /// A face has fewer than three corners.
-    #[error("face {face} has {corners} corners")]
+    #[error(
+        "face {face} has {corners} corners; faces are counted from 0 and have at least 3"
+    )]
     TooFewCorners {
         /// Which face.
         face: usize,

@@ -68,10 +68,12 @@ pub enum ReadErrorKind {
         found: Box<str>,
     },
     /// A line of an `.obj` breaks its grammar.
-    #[error("no line of an .obj file: {0}")]
+    #[error("{}", obj_advice(.0))]
     Obj(tobj::LoadError),
     /// A face of an `.obj` names a point that is not in the file.
-    #[error("a face names a point that does not exist")]
+    #[error(
+        "a face names a point that is not in the file; the first `v` is 1, and -1 the last one before the face"
+    )]
     NoSuchPoint,
     /// The points and faces do not bound a solid.
     #[error("{0}")]
@@ -176,6 +178,18 @@ impl Located {
 
     pub(super) fn named(self, path: &Path) -> ReadError {
         ReadError { path: path.to_owned(), place: self.place, kind: self.kind }
+    }
+}
+
+/// What a line of an `.obj` should be.
+fn obj_advice(error: &tobj::LoadError) -> String {
+    if matches!(error, tobj::LoadError::PositionParseError) {
+        "expected `v` and three numbers, as in `v 1 0.5 -2`".to_owned()
+    } else if matches!(error, tobj::LoadError::FaceParseError) {
+        "expected `f` and the numbers of points, as in `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`"
+            .to_owned()
+    } else {
+        format!("no line of an .obj file: {error}")
     }
 }
 

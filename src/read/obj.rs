@@ -25,13 +25,47 @@ pub(super) fn read(text: &[u8]) -> std::result::Result<Faces, Located> {
         Ok((models, _)) => collect(&models),
         // Found out when all lines have been taken.
         Err(LoadError::FaceVertexOutOfBounds) => {
-            Err(Located::nowhere(ReadErrorKind::NoSuchPoint))
+            let place = stray_face(text);
+            Err(Located { place, kind: ReadErrorKind::NoSuchPoint })
         }
         Err(error) => {
             let place = Place { line: lines.at.max(1), column: 1 };
             Err(Located::at(place, ReadErrorKind::Obj(error)))
         }
     }
+}
+
+/// Where the first face stands that names a point which is not in the file. Faces may name
+/// points of later lines; numbers below zero count back from the face.
+fn stray_face(text: &[u8]) -> Option<Place> {
+    let mut lines = Lines { left: text, ready: Vec::new(), given: 0, at: 0 };
+    let (mut points, mut highest) = (0_i64, Vec::new());
+    loop {
+        lines.advance();
+        let mut words = words(&lines.ready).map(|at| &lines.ready[at]);
+        match words.next() {
+            None => break,
+            Some(b"v") => points += 1,
+            Some(_) => {
+                let named = words.filter_map(|word| {
+                    let digits = word.split(|&b| b == b'/').next()?;
+                    std::str::from_utf8(digits).ok()?.parse::<i64>().ok()
+                });
+                let (least, most) =
+                    named.fold((i64::MAX, i64::MIN), |(least, most), n| {
+                        let back = n < 0 && n >= -points;
+                        (if back { least } else { least.min(n) }, most.max(n))
+                    });
+                let most = if least < 1 { i64::MAX } else { most };
+                // Only faces that name a higher point than those before can be the first.
+                if highest.last().is_none_or(|&(before, _)| most > before) {
+                    highest.push((most, lines.at));
+                }
+            }
+        }
+    }
+    let (_, line) = highest.into_iter().find(|&(most, _)| most > points)?;
+    Some(Place { line, column: 1 })
 }
 
 /// The points and faces of all that tobj found.
