@@ -583,7 +583,7 @@ fn files_and_imports_are_found() {
     assert_eq!(
         read("a.step", "").unwrap_err().to_string(),
         format!(
-            "{start}/a.step: the format is unknown; known are .csg, .scad, .obj, .stl and .off"
+            "{start}/a.step: the format is unknown; known are .csg, .scad, .obj, .stl, .off and .3mf"
         )
     );
 }

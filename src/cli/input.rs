@@ -110,6 +110,8 @@ enum FormatArg {
     Obj,
     Stl,
     Off,
+    #[value(name = "3mf")]
+    ThreeMf,
 }
 
 impl From<FormatArg> for Format {
@@ -120,6 +122,7 @@ impl From<FormatArg> for Format {
             FormatArg::Obj => Self::Obj,
             FormatArg::Stl => Self::Stl,
             FormatArg::Off => Self::Off,
+            FormatArg::ThreeMf => Self::ThreeMf,
         }
     }
 }
@@ -183,7 +186,7 @@ impl Reading {
             return Ok(read::file(file, &options)?);
         }
         let Some(format) = options.format else {
-            bail!("standard input needs --format csg, scad, obj, stl or off");
+            bail!("standard input needs --format csg, scad, obj, stl, off or 3mf");
         };
         let mut bytes = Vec::new();
         let mut some = io::stdin().lock().take(self.max_bytes.saturating_add(1));

@@ -43,7 +43,7 @@ use clap::{Args, Parser, Subcommand};
 )]
 #[command(
     after_help = "FILE is an OpenSCAD .csg or .scad file (.scad needs OpenSCAD installed), or a closed mesh
-as .obj, .stl or .off; or - for standard input, with --format. Lengths are the model's
+as .obj, .stl, .off or .3mf; or - for standard input, with --format. Lengths are the model's
 units, millimetres by OpenSCAD's custom.
 
 Exit codes: 0 done, or the answer is yes; 1 the answer is no; 2 it could not be done.

@@ -30,7 +30,7 @@ pub enum ReadErrorKind {
     #[error("cannot be read: {0}")]
     Io(io::Error),
     /// The name of the file does not tell its format.
-    #[error("the format is unknown; known are .csg, .scad, .obj, .stl and .off")]
+    #[error("the format is unknown; known are .csg, .scad, .obj, .stl, .off and .3mf")]
     UnknownFormat,
     /// The text is longer than places in it can be counted.
     #[error("the text has {0} bytes; at most 4294967295 are read")]
@@ -75,6 +75,29 @@ pub enum ReadErrorKind {
         "a face names a point that is not in the file; the first `v` is 1, and -1 the last one before the face"
     )]
     NoSuchPoint,
+    /// An archive that cannot be opened, or a part of it that cannot be unpacked.
+    #[error("not a sound zip archive: {0}")]
+    Archive(String),
+    /// An archive lacks a part.
+    #[error("the archive has no part `{0}`")]
+    NoPart(Box<str>),
+    /// A part of an archive is at fault.
+    #[error("{0}")]
+    Part(Box<ReadError>),
+    /// A text breaks the rules of XML.
+    #[error("not sound XML: {0}")]
+    Xml(String),
+    /// A text that has to be UTF-8 is not.
+    #[error("the text is not UTF-8")]
+    NotUtf8,
+    /// An object of an archive is at fault.
+    #[error("{name}: {error}")]
+    Object {
+        /// Its number, and its name if it has one.
+        name: Box<str>,
+        /// What is wrong with it.
+        error: Box<Self>,
+    },
     /// The points and faces do not bound a solid.
     #[error("{0}")]
     Mesh(MeshError),
@@ -174,6 +197,14 @@ impl Located {
     /// The fault, at a place if it has none.
     pub(super) fn or_at(self, place: Place) -> Self {
         Self { place: self.place.or(Some(place)), ..self }
+    }
+
+    /// The fault, in a part of an archive, if it has a place there.
+    pub(super) fn within(self, part: &str) -> Self {
+        if self.place.is_none() {
+            return self;
+        }
+        Self::nowhere(ReadErrorKind::Part(Box::new(self.named(Path::new(part)))))
     }
 
     pub(super) fn named(self, path: &Path) -> ReadError {

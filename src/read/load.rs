@@ -33,12 +33,22 @@ impl Budget {
         if said > self.left {
             return Err(ReadErrorKind::TooManyBytes { limit: self.limit });
         }
+        self.drain(file, said)
+    }
+
+    /// The bytes that something yields until it ends, of which it says how many there are at
+    /// least.
+    pub(super) fn drain(
+        &mut self,
+        from: impl Read,
+        said: u64,
+    ) -> Result<Vec<u8>, ReadErrorKind> {
         let mut bytes = Vec::new();
         let room = usize::try_from(said).unwrap_or(usize::MAX);
         bytes.try_reserve_exact(room).map_err(|_| {
             ReadErrorKind::Io(io::Error::from(io::ErrorKind::OutOfMemory))
         })?;
-        let mut some = file.take(self.left.saturating_add(1));
+        let mut some = from.take(self.left.saturating_add(1));
         some.read_to_end(&mut bytes).map_err(ReadErrorKind::Io)?;
         self.spend(&bytes)?;
         Ok(bytes)

@@ -1,4 +1,5 @@
-//! Text in, solid out: OpenSCAD's `.csg` and `.scad`, and meshes as `.obj`, `.stl`, `.off`.
+//! Text in, solid out: OpenSCAD's `.csg` and `.scad`, and meshes as `.obj`, `.stl`, `.off` and
+//! `.3mf`.
 //!
 //! [`file()`] and [`bytes()`] are the doors. What a file says goes into a [`Model`]; what is
 //! wrong with it into a [`ReadError`] that names file, line and column. No bytes make a
@@ -26,8 +27,10 @@ mod program;
 mod scad;
 mod similar;
 mod stl;
+mod threemf;
 mod turn;
 mod words;
+mod xml;
 
 use std::path::Path;
 
@@ -64,6 +67,11 @@ pub fn file(path: &Path, options: &ReadOptions) -> Result<Model, ReadError> {
     match format {
         Format::Scad => scad::file(path, options),
         Format::Csg => bytes(&load()?, path, format, options),
+        Format::ThreeMf => {
+            let mut budget = Budget::new(options.max_bytes);
+            let archive = budget.load(path).map_err(named)?;
+            threemf::model(&archive, &mut budget).map_err(|error| error.named(path))
+        }
         Format::Obj | Format::Stl | Format::Off => {
             // The text is not kept while the mesh is built.
             let faces = mesh(&load()?, format);
@@ -84,11 +92,15 @@ pub fn bytes(
     format: Format,
     options: &ReadOptions,
 ) -> Result<Model, ReadError> {
-    let fits = Budget::new(options.max_bytes).spend(bytes);
+    let mut budget = Budget::new(options.max_bytes);
+    let fits = budget.spend(bytes);
     fits.map_err(|kind| Located::nowhere(kind).named(path))?;
     match format {
         Format::Csg => openscad::read(bytes, path, options),
         Format::Scad => scad::bytes(bytes, path, options),
+        Format::ThreeMf => {
+            threemf::model(bytes, &mut budget).map_err(|error| error.named(path))
+        }
         Format::Obj | Format::Stl | Format::Off => built(mesh(bytes, format), path),
     }
 }
@@ -110,6 +122,8 @@ fn mesh(bytes: &[u8], format: Format) -> Result<Faces, Located> {
         Format::Obj => obj::read(bytes),
         Format::Stl => stl::read(bytes),
         Format::Off => off::read(bytes),
-        Format::Csg | Format::Scad => Err(Located::nowhere(ReadErrorKind::UnknownFormat)),
+        Format::Csg | Format::Scad | Format::ThreeMf => {
+            Err(Located::nowhere(ReadErrorKind::UnknownFormat))
+        }
     }
 }

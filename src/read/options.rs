@@ -96,6 +96,8 @@ pub enum Format {
     Stl,
     /// The object file format of Geomview.
     Off,
+    /// The 3D manufacturing format: an archive of objects.
+    ThreeMf,
 }
 
 impl Format {
@@ -107,6 +109,7 @@ impl Format {
             "obj" => Some(Self::Obj),
             "stl" => Some(Self::Stl),
             "off" => Some(Self::Off),
+            "3mf" => Some(Self::ThreeMf),
             _ => None,
         }
     }

@@ -32,7 +32,7 @@ pub(super) struct Reading<'a> {
     /// The triangles in them and in polygons.
     facets: u64,
     /// The files imported so far.
-    pub(super) imports: HashMap<PathBuf, Arc<Mesh>>,
+    pub(super) imports: HashMap<PathBuf, Solid>,
     /// What OpenSCAD has made so far, by the texts it was given.
     pub(super) elsewhere: HashMap<String, Shape>,
     /// What it was asked for.

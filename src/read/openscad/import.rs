@@ -1,21 +1,20 @@
 //! `import` of meshes and drawings.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use glam::DVec2;
 
 use super::super::dxf;
-use super::super::error::{Located, ReadError, ReadErrorKind};
+use super::super::error::{Located, ReadErrorKind};
 use super::super::faces::{Faces, TURNED};
-use super::super::load::Budget;
 use super::super::options::Format;
 use super::super::outline::Outline;
+use super::super::threemf;
 use super::arguments::Call;
 use super::curve;
 use super::evaluate::Reading;
 use super::node::Shape;
-use crate::mesh::{Mesh, round};
+use crate::mesh::round;
 use crate::solid::{Solid, Tag};
 
 /// A mesh or drawing from a file, looked for in the folder of the `.csg`. One that is not there is
@@ -51,31 +50,72 @@ fn imported(
         return drawing(path, call, reading);
     }
     let format = Format::of(path);
-    let Some(format @ (Format::Obj | Format::Stl | Format::Off)) = format else {
+    let Some(format @ (Format::Obj | Format::Stl | Format::Off | Format::ThreeMf)) =
+        format
+    else {
         return Err(left(path, call));
     };
-    let mesh = match reading.imports.get(path) {
-        Some(mesh) => mesh.clone(),
+    let solid = match reading.imports.get(path) {
+        Some(solid) => solid.clone(),
         None => {
-            let (mesh, turned) =
-                load(path, format, &mut reading.budget).map_err(|error| {
-                    Located::at(call.place(), ReadErrorKind::Import(Box::new(error)))
-                })?;
-            if turned {
-                reading.model.counts.turned += 1;
-                reading.warn(call.place(), format!("{}: {TURNED}", path.display()));
-            }
-            reading.imports.insert(path.to_owned(), mesh.clone());
-            mesh
+            let import = |error: Located| {
+                let error = ReadErrorKind::Import(Box::new(error.named(path)));
+                Located::at(call.place(), error)
+            };
+            let read = match format {
+                Format::ThreeMf => archive(path, call, reading),
+                _ => mesh(path, format, call, reading),
+            };
+            let solid = read.map_err(import)?;
+            reading.imports.insert(path.to_owned(), solid.clone());
+            solid
         }
     };
-    Ok(Shape::Solid(Solid::mesh(mesh).placed(call.place())))
+    Ok(Shape::Solid(solid.placed(call.place())))
+}
+
+/// The mesh of a file.
+fn mesh(
+    path: &Path,
+    format: Format,
+    call: &Call<'_>,
+    reading: &mut Reading<'_>,
+) -> Result<Solid, Located> {
+    let bytes = reading.budget.load(path).map_err(Located::nowhere)?;
+    let faces = super::super::mesh(&bytes, format);
+    drop(bytes);
+    let built = faces.and_then(Faces::build)?;
+    if built.turned {
+        reading.model.counts.turned += 1;
+        reading.warn(call.place(), format!("{}: {TURNED}", path.display()));
+    }
+    Ok(Solid::mesh(built.mesh))
+}
+
+/// The meshes of an archive, as they are written: OpenSCAD 2021.01 looks neither at where the
+/// build has them nor at the unit.
+fn archive(
+    path: &Path,
+    call: &Call<'_>,
+    reading: &mut Reading<'_>,
+) -> Result<Solid, Located> {
+    let bytes = reading.budget.load(path).map_err(Located::nowhere)?;
+    let contents = threemf::read(&bytes, &mut reading.budget)?;
+    let moved = contents.is_moved.then(|| {
+        "meshes are taken as they are written, as by OpenSCAD, without their places and units"
+            .to_owned()
+    });
+    for message in contents.warnings.into_iter().chain(moved) {
+        reading.warn(call.place(), format!("{}: {message}", path.display()));
+    }
+    reading.model.counts.turned += contents.turned;
+    Ok(threemf::union(contents.meshes))
 }
 
 /// That a file is one that only OpenSCAD reads, or none that can be read.
 fn left(path: &Path, call: &Call<'_>) -> Located {
     /// What OpenSCAD imports, but is not read here.
-    const ENDINGS: [&str; 4] = ["3mf", "amf", "nef3", "svg"];
+    const ENDINGS: [&str; 3] = ["amf", "nef3", "svg"];
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     let ending = ending.to_ascii_lowercase();
     if !ENDINGS.contains(&ending.as_str()) {
@@ -127,19 +167,4 @@ fn drawing(
         return Ok(Shape::Empty);
     }
     Ok(Shape::Flat(Outline::paths(paths).tagged(Tag::Place(call.place()))))
-}
-
-fn load(
-    path: &Path,
-    format: Format,
-    budget: &mut Budget,
-) -> Result<(Arc<Mesh>, bool), ReadError> {
-    let mut read = || {
-        let bytes = budget.load(path).map_err(Located::nowhere)?;
-        let faces = super::super::mesh(&bytes, format);
-        drop(bytes);
-        let built = faces.and_then(Faces::build)?;
-        Ok((Arc::new(built.mesh), built.turned))
-    };
-    read().map_err(|error: Located| error.named(path))
 }
