@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use proptest::prelude::*;
 use solidray::read::{
-    self, Curves, Format, Model, ReadError, ReadErrorKind, ReadOptions,
+    self, Curves, Format, Imports, Model, ReadError, ReadErrorKind, ReadOptions,
 };
 use solidray::{CompileError, Mesh, Scene, View};
 
@@ -888,4 +888,132 @@ fn plane_models_are_plates_if_that_is_wanted() {
     let read = read::bytes(b"square([2, 3]);", Path::new("a.csg"), Format::Csg, &options);
     let scene = Scene::compile(&read.expect("a plate").solid).expect("a box");
     assert_eq!(scene.bounds().size(), glam::dvec3(2.0, 3.0, 2.5));
+}
+
+/// A folder with a model's folder in it, and a mesh in both.
+fn nested_folders() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("room");
+    std::fs::create_dir_all(folder.path().join("model/parts")).expect("room");
+    let off = "OFF 4 4 0\n0 0 0 6 0 0 0 6 0 0 0 6\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+    for name in ["a.off", "model/a.off", "model/parts/a.off"] {
+        std::fs::write(folder.path().join(name), off).expect("room");
+    }
+    std::fs::write(folder.path().join("a.dat"), "1 2\n3 4\n").expect("room");
+    folder
+}
+
+#[test]
+fn models_name_files_in_their_own_folder_unless_others_are_allowed() {
+    let folder = nested_folders();
+    let model = folder.path().join("model/m.csg");
+    let read = |text: &str, imports: Imports| {
+        let options = ReadOptions { imports, ..ReadOptions::default() };
+        read::bytes(text.as_bytes(), &model, Format::Csg, &options)
+    };
+    for name in ["a.off", "./a.off", "parts/a.off", "parts/../a.off"] {
+        let text = format!("import(\"{name}\");");
+        assert_tetrahedron(&read(&text, Imports::Folder).expect(name));
+    }
+    let absolute = folder.path().join("model/a.off");
+    let absolute = absolute.to_str().unwrap();
+    for name in ["../a.off", "parts/../../a.off", "../model/a.off", absolute] {
+        let text = format!("cube(1);\nimport(\"{name}\");");
+        let error = read(&text, Imports::Folder).expect_err(name).to_string();
+        let path = model.with_file_name(name);
+        let expected = format!(
+            "{}:2:1: {} is outside of the folder of the model; --allow-outside reads it all the same",
+            model.display(),
+            path.display()
+        );
+        assert_eq!(error, expected);
+        let text = format!("import(\"{name}\");");
+        assert_tetrahedron(&read(&text, Imports::Anywhere).expect(name));
+    }
+    // Whether there is a file is not told, and no other way leads there.
+    for text in [
+        "import(\"../none.off\");",
+        "import(\"../none.dxf\");",
+        "import(\"../none.3mf\");",
+        "import(\"../none.amf\");",
+        "surface(\"../a.dat\");",
+        "linear_extrude(1) fill() import(\"../a.svg\");",
+        "fill() linear_extrude(\"../a.dxf\", filename = \"../a.dxf\");",
+    ] {
+        let error = read(text, Imports::Folder).expect_err(text);
+        assert!(matches!(error.kind, ReadErrorKind::Outside(_)), "{text}: {error}");
+    }
+    assert!(read("surface(\"../a.dat\");", Imports::Anywhere).is_ok());
+}
+
+#[test]
+#[cfg(unix)]
+fn links_out_of_the_folder_are_ways_out_of_it() {
+    use std::os::unix::fs::symlink;
+    let folder = nested_folders();
+    let model = folder.path().join("model/m.csg");
+    symlink("../a.off", model.with_file_name("out.off")).unwrap();
+    symlink("parts/a.off", model.with_file_name("in.off")).unwrap();
+    symlink("..", model.with_file_name("up")).unwrap();
+    symlink("model", folder.path().join("linked")).unwrap();
+    let read = |model: &Path, text: &str| {
+        read::bytes(text.as_bytes(), model, Format::Csg, &ReadOptions::default())
+    };
+    for name in ["out.off", "up/a.off"] {
+        let text = format!("import(\"{name}\");");
+        let error = read(&model, &text).expect_err(name);
+        assert!(matches!(error.kind, ReadErrorKind::Outside(_)), "{error}");
+    }
+    // The folder itself may be a link.
+    for folder in [model.clone(), folder.path().join("linked/m.csg")] {
+        assert_tetrahedron(&read(&folder, "import(\"in.off\");").unwrap());
+    }
+}
+
+/// A pipe to which nobody writes would be waited for, a device has no end.
+#[test]
+#[cfg(target_os = "linux")]
+fn what_models_name_is_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("m.csg");
+    std::fs::create_dir(folder.path().join("folder.stl")).unwrap();
+    let pipe = folder.path().join("pipe.stl");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.is_ok_and(|status| status.success()));
+    std::os::unix::fs::symlink("/dev/zero", folder.path().join("zero.stl")).unwrap();
+    let options = ReadOptions { imports: Imports::Anywhere, ..ReadOptions::default() };
+    for name in ["folder.stl", "pipe.stl", "zero.stl", "/dev/zero", "/dev/full"] {
+        for node in ["import", "surface"] {
+            let text = format!("{node}(\"{name}\");");
+            let error = read::bytes(text.as_bytes(), &model, Format::Csg, &options);
+            let error = error.expect_err(name);
+            let is_it = matches!(error.kind, ReadErrorKind::NoFile(_))
+                || error.to_string().contains("must be a file that ends in");
+            assert!(is_it, "{error}");
+        }
+    }
+}
+
+/// A file that says to be long, and has nothing in it, is not read to see.
+#[test]
+#[cfg(target_os = "linux")]
+fn files_of_holes_are_too_long() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.stl");
+    let file = std::fs::File::create(&path).unwrap();
+    file.set_len(10_000_000_000).unwrap();
+    for name in ["a.stl", "a.3mf", "a.csg"] {
+        let other = folder.path().join(name);
+        if other != path {
+            std::fs::hard_link(&path, &other).unwrap();
+        }
+        let error = read::file(&other, &ReadOptions::default()).expect_err(name);
+        assert!(matches!(error.kind, ReadErrorKind::TooManyBytes { .. }), "{error}");
+    }
+    // A head that declares ten gigabytes of triangles is no reason to make room for them.
+    let mut stl = vec![0; 84 + 50];
+    stl[80..84].copy_from_slice(&200_000_000_u32.to_le_bytes());
+    assert_eq!(
+        refused(stl, Format::Stl),
+        "part.x: the file declares 200000000 triangles, but has bytes for 1"
+    );
 }

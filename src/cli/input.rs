@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
-use solidray::read::{self, Curves, Format, Model, ReadOptions, Rules};
+use solidray::read::{self, Curves, Format, Imports, Model, ReadOptions, Rules};
 use solidray::{CompileError, CompileOptions, NearMisses, Scene, Solid};
 
 use super::Global;
@@ -56,6 +56,9 @@ pub(super) struct Reading {
     /// occurs more than once counted as often
     #[arg(long, value_name = "N", default_value_t = CompileOptions::default().most_nodes, help_heading = "Reading")]
     max_nodes: u64,
+    /// Let a .csg import files from outside of its folder
+    #[arg(long, help_heading = "Reading")]
+    allow_outside: bool,
     /// Read no more than this, of the file and all that it imports together
     #[arg(
         long,
@@ -175,6 +178,7 @@ impl Reading {
             openscad: self.openscad.clone(),
             openscad_limit: self.openscad_limit,
             format: self.format.map(Format::from),
+            imports: if self.allow_outside { Imports::Anywhere } else { Imports::Folder },
             max_bytes: self.max_bytes,
             max_facets: self.max_facets,
             facet_tolerance: self.facet_tolerance,

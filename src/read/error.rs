@@ -128,6 +128,15 @@ pub enum ReadErrorKind {
         "the model is two-dimensional; --plate THICKNESS or linear_extrude gives it a thickness"
     )]
     TwoDimensional,
+    /// A model names a file that is not in its folder.
+    #[error(
+        "{} is outside of the folder of the model; --allow-outside reads it all the same",
+        .0.display()
+    )]
+    Outside(PathBuf),
+    /// A model names something that is no file with an end.
+    #[error("{} is no regular file", .0.display())]
+    NoFile(PathBuf),
     /// An imported file is at fault.
     #[error("import: {0}")]
     Import(Box<ReadError>),

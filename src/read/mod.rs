@@ -38,7 +38,7 @@ use crate::solid::Solid;
 
 pub use error::{ReadError, ReadErrorKind};
 pub use model::{Counts, Model, Warning};
-pub use options::{Curves, Format, ReadOptions, Rules};
+pub use options::{Curves, Format, Imports, ReadOptions, Rules};
 
 use error::Located;
 use faces::Faces;

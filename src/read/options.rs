@@ -17,6 +17,9 @@ pub struct ReadOptions {
     pub openscad_limit: Duration,
     /// The format; when there is none, the file's name tells.
     pub format: Option<Format>,
+    /// Where the files may be that a `.csg` names. For `.scad` files it does not matter: the
+    /// program that converts them reads what they name.
+    pub imports: Imports,
     /// The most bytes that are read, of a file and all that it imports together. What is read
     /// takes at most some 20 times as much memory as its text.
     pub max_bytes: u64,
@@ -35,7 +38,8 @@ pub struct ReadOptions {
 }
 
 impl Default for ReadOptions {
-    /// `Curves::Auto`; the rules of 2021; five minutes for OpenSCAD; 1 GiB, which as binary `.stl` is 21 million triangles; 30 million
+    /// `Curves::Auto`; the rules of 2021; five minutes for OpenSCAD; imports from the model's folder;
+    /// 1 GiB, which as binary `.stl` is 21 million triangles; 30 million
     /// facets; and facets within 0.005 of what they stand for.
     fn default() -> Self {
         Self {
@@ -44,6 +48,7 @@ impl Default for ReadOptions {
             openscad: None,
             openscad_limit: Duration::from_secs(300),
             format: None,
+            imports: Imports::default(),
             max_bytes: 1 << 30,
             max_facets: 30_000_000,
             facet_tolerance: 0.005,
@@ -81,6 +86,16 @@ pub enum Rules {
     /// a part of a turn are rounded up, and a `linear_extrude` with twist or uneven scale splits the
     /// edges of its outline.
     V2025,
+}
+
+/// Where the files may be that a model names.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Imports {
+    /// In the folder of the model, or in folders there.
+    #[default]
+    Folder,
+    /// Anywhere: for models whose authors are trusted.
+    Anywhere,
 }
 
 /// The formats that can be read.

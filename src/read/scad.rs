@@ -8,7 +8,7 @@ use std::process::Command;
 use super::error::{Located, ReadError, ReadErrorKind};
 use super::load::Budget;
 use super::program::{self, Fault};
-use super::{Model, ReadOptions, Warning, openscad};
+use super::{Imports, Model, ReadOptions, Warning, openscad};
 
 /// Reads a file. Places in messages are those of the `.csg` that OpenSCAD makes of it.
 pub(super) fn file(path: &Path, options: &ReadOptions) -> Result<Model, ReadError> {
@@ -73,7 +73,9 @@ fn converted(
     // author's.
     let mut name = path.file_name().unwrap_or(OsStr::new("-")).to_owned();
     name.push(" as .csg");
-    let mut model = openscad::read(&text, &path.with_file_name(name), options)?;
+    // What the model names, OpenSCAD has read or could have, wherever it is.
+    let options = ReadOptions { imports: Imports::Anywhere, ..options.clone() };
+    let mut model = openscad::read(&text, &path.with_file_name(name), &options)?;
     for warning in &mut model.warnings {
         // Nobody has seen that file: a place in it would be looked for in the author's.
         if let Some(place) = warning.place.take() {

@@ -15,6 +15,7 @@ use super::super::off;
 use super::super::outline::Outline;
 use super::super::program::{self, Fault};
 use super::evaluate::Reading;
+use super::file;
 use super::node::Shape;
 use super::value::{Document, Value};
 use crate::solid::{Place, Solid, Tag};
@@ -35,7 +36,7 @@ pub(super) fn evaluated(
     reading: &mut Reading<'_>,
 ) -> Result<Shape, Located> {
     let place = document.statements[statement].place;
-    let text = text(document, statement, reading.folder);
+    let text = text(document, statement, reading)?;
     let shape = match reading.elsewhere.get(&text) {
         Some(shape) => shape.clone(),
         None => {
@@ -145,7 +146,11 @@ fn lines(picture: &str) -> Vec<Vec<DVec2>> {
 
 /// The text of a statement and what is in its braces, with the files it names by their whole
 /// paths.
-fn text(document: &Document<'_>, statement: usize, folder: &Path) -> String {
+fn text(
+    document: &Document<'_>,
+    statement: usize,
+    reading: &Reading<'_>,
+) -> Result<String, Located> {
     let mut text = String::new();
     let mut open: Vec<usize> = Vec::new();
     let end = document.statements[statement].end as usize;
@@ -165,16 +170,19 @@ fn text(document: &Document<'_>, statement: usize, folder: &Path) -> String {
             if let Some(name) = argument.name {
                 let _ = write!(text, "{name}=");
             }
-            let file = match argument.name {
-                Some("file") => document.string(argument.value),
-                None if matches!(statement.name, "import" | "surface") => {
+            let named = match argument.name {
+                Some("file" | "filename") => document.string(argument.value),
+                // Old nodes take files where others take numbers.
+                None if !matches!(statement.name, "text" | "color") => {
                     document.string(argument.value)
                 }
                 _ => None,
             };
-            match file {
-                Some(file) => {
-                    let whole = std::path::absolute(folder.join(file));
+            match named {
+                Some(name) => {
+                    let path = file::path(&name, reading.folder, reading.options);
+                    let path = path.map_err(|kind| Located::at(statement.place, kind))?;
+                    let whole = std::path::absolute(path);
                     let whole = whole.unwrap_or_default().to_string_lossy().into_owned();
                     let whole = whole.replace('\\', "\\\\").replace('"', "\\\"");
                     let _ = write!(text, "\"{whole}\"");
@@ -191,7 +199,7 @@ fn text(document: &Document<'_>, statement: usize, folder: &Path) -> String {
         }
     }
     text.extend(open.iter().map(|_| '}'));
-    text
+    Ok(text)
 }
 
 /// The text of a value and all that is in it.

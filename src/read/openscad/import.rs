@@ -13,6 +13,7 @@ use super::super::threemf;
 use super::arguments::Call;
 use super::curve;
 use super::evaluate::Reading;
+use super::file;
 use super::node::Shape;
 use crate::mesh::round;
 use crate::solid::{Solid, Tag};
@@ -25,8 +26,9 @@ pub(super) fn import(
     reading: &mut Reading<'_>,
 ) -> Result<Shape, Located> {
     let Some(name) = call.text("file")? else { return Ok(Shape::Empty) };
-    let path = reading.folder.join(&name);
-    match imported(&path, call, reading) {
+    let path = file::path(&name, reading.folder, reading.options)
+        .map_err(|kind| Located::at(call.place(), kind));
+    match path.and_then(|path| imported(&path, call, reading)) {
         Err(error) if name.is_empty() || is_missing(&error) => {
             reading.leave_out(error, call.place());
             Ok(Shape::Empty)

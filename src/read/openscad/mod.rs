@@ -20,6 +20,7 @@ mod curve;
 mod elsewhere;
 mod evaluate;
 mod extrude;
+mod file;
 mod import;
 mod lex;
 mod node;

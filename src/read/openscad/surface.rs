@@ -1,6 +1,7 @@
 //! `surface`.
 
 use std::io::Cursor;
+use std::path::Path;
 
 use glam::{DVec2, DVec3};
 
@@ -9,6 +10,7 @@ use super::super::faces::{Faces, Points};
 use super::super::words::Words;
 use super::arguments::Call;
 use super::evaluate::Reading;
+use super::file;
 use super::import::is_missing;
 use super::node::Shape;
 use crate::solid::Solid;
@@ -31,19 +33,24 @@ pub(super) fn surface(
 ) -> Result<Shape, Located> {
     let Some(name) = call.text("file")? else { return Ok(Shape::Empty) };
     let (center, invert) = (call.truth("center")?, call.truth("invert")?);
-    let path = reading.folder.join(&name);
-    let import = |error: Located| {
-        let error = ReadErrorKind::Import(Box::new(error.named(&path)));
+    let path = file::path(&name, reading.folder, reading.options)
+        .map_err(|kind| Located::at(call.place(), kind));
+    let import = |path: &Path, error: Located| {
+        let error = ReadErrorKind::Import(Box::new(error.named(path)));
         Located::at(call.place(), error)
     };
-    let loaded = reading.budget.load(&path).map_err(|e| import(Located::nowhere(e)));
-    let bytes = match loaded {
+    let loaded = path.and_then(|path| match reading.budget.load(&path) {
+        Ok(bytes) => Ok((path, bytes)),
+        Err(kind) => Err(import(&path, Located::nowhere(kind))),
+    });
+    let (path, bytes) = match loaded {
         Err(error) if name.is_empty() || is_missing(&error) => {
             reading.leave_out(error, call.place());
             return Ok(Shape::Empty);
         }
         loaded => loaded?,
     };
+    let import = |error| import(&path, error);
     let mut count = |columns: usize, rows: usize| {
         let cells = (columns as u64).saturating_mul(rows as u64);
         reading.count_facets(cells.saturating_mul(4), call.place())
