@@ -99,6 +99,81 @@ const FILES: &[(&str, &[u8])] = &[
     ),
 ];
 
+/// Drawings, and what stands behind their names where they are imported.
+const DRAWINGS: &[(&str, &str)] = &[
+    // Pages: units, boxes of other shapes and with corners, the origin in the middle.
+    (r#"<svg><rect x="1" y="1" width="4" height="3"/></svg>"#, ""),
+    (r#"<svg width="50%" viewBox="0 0 20 10"><circle cx="5" cy="5" r="4"/></svg>"#, ""),
+    (
+        r#"<svg viewBox="0 0 20 10"><rect x="1" y="2" width="4" height="3"/></svg>"#,
+        ", dpi = 96",
+    ),
+    (
+        r#"<svg width="1in" height="2pc" viewBox="1 2 20 10"><ellipse cx="5" cy="4" rx="3" ry="2"/></svg>"#,
+        "",
+    ),
+    (
+        r#"<svg width="100mm" height="2cm" viewBox="0,0 20,10" preserveAspectRatio="xMaxYMin slice"><rect x="1" y="1" width="4" height="3"/></svg>"#,
+        "",
+    ),
+    (
+        r#"<svg width="90px" height="40pt" viewBox="1 2 20 10" preserveAspectRatio="none"><rect x="1" y="1" width="4" height="3"/></svg>"#,
+        ", center = true",
+    ),
+    (
+        r#"<svg width="60" height="1e1" viewBox="3 4 20 10"><rect x="1" y="1" width="4" height="3"/></svg>"#,
+        ", center = true, $fn = 100",
+    ),
+    // Shapes: corners that are round, points, lines by their strokes.
+    (r#"<svg><rect x="1" y="2" width="9" height="4" rx="1" ry="3"/></svg>"#, ""),
+    (
+        r#"<svg><rect width="4mm" height="5"/><rect width="4" height="5" ry="9"/></svg>"#,
+        "",
+    ),
+    (r#"<svg><polygon points="5-3,8,3 9-2 1.5 5"/></svg>"#, ""),
+    (r#"<svg><polyline points="0,0 10,0 10,10 0,9" stroke-width="2"/></svg>"#, ""),
+    (
+        r#"<svg><polyline points="0,0 10,0 10,10 0,1" style="stroke-width:3;stroke-linejoin:bevel;stroke-linecap:butt"/></svg>"#,
+        "",
+    ),
+    (
+        r#"<svg><line x2="10" y2="5" stroke-width="3" stroke-linecap="round"/><path d="M20 0L30 0L20 1" stroke-linejoin="round"/></svg>"#,
+        "",
+    ),
+    // Maps, groups, what is defined and what is not known.
+    (
+        r#"<svg viewBox="0 0 99 99" width="99mm"><g transform="translate(20,5) rotate(30)"><rect x="1" y="2" width="5" height="6" transform="skewX(20) scale(1,2)"/></g><g transform="matrix(1 .5 -.5 1 9 9) rotate(45, 3, 4)"><path d="M0 0h4v3z"/></g></svg>"#,
+        "",
+    ),
+    (
+        r##"<svg><defs><rect id="a" width="9" height="9"/></defs><use href="#a" x="20"/><g style="display:none"><rect width="2" height="3"/></g><a><clipPath><rect x="3" width="2" height="2"/></clipPath></a></svg>"##,
+        "",
+    ),
+    (
+        r#"<svg viewBox="0 0 20 10"><rect width="2" height="3"/><svg x="9" viewBox="0 0 40 30"><rect x="3" width="1" height="1"/></svg></svg>"#,
+        "",
+    ),
+    // Paths: all commands, lines within lines, numbers without spaces, lines left open.
+    (
+        r#"<svg><path d="M0 0h9v9h-9z M2 2H5V5H2zm1 1l1 0 0 1z"/><rect x="3" y="3" width="1" height="1"/></svg>"#,
+        "",
+    ),
+    (r#"<svg><path d="M1.5.5h5v1.25.5z M1E1-3h1E1v5z m1e+1 7l100e-1-3v5z"/></svg>"#, ""),
+    (
+        r#"<svg><path d="M0 0C0 8 4 9 9 9S20 2 20 0c1-3-2-5-5-5s-9 1-9 2zM30 0Q35 9 40 0T50 0q2-9 4-5t3-9z"/></svg>"#,
+        "",
+    ),
+    (
+        r#"<svg><path d="M0 0A5 5 0 0 1 10 0L5-9zM20 0a8 3 30 1 0 3 4zm30 0a2 2 0 0 1 9 9z"/></svg>"#,
+        "",
+    ),
+    (
+        r#"<svg><path d="M0 0L10 0L10 10 M20 20C20 30 30 30 30 20z l0 9 9 9 A"/></svg>"#,
+        "",
+    ),
+    (r#"<svg><path d="M0 0L5 0L5 5L0 .05"/><path d=""/><path/></svg>"#, ""),
+];
+
 fn solid(text: &str, curves: Curves) -> Solid {
     solid_in(text, curves, Path::new("a.csg"))
 }
@@ -135,6 +210,100 @@ fn faceted_texts_have_the_volume_of_openscads_polyhedra() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn drawings_are_where_openscad_has_them() {
+    if !openscad::is_installed("nothing is compared with it") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("a.csg");
+    let mut wrong = Vec::new();
+    for (drawing, arguments) in DRAWINGS {
+        std::fs::write(folder.path().join("a.svg"), drawing).expect("it is written");
+        let text = thick(&format!("import(\"a.svg\"{arguments});"));
+        std::fs::write(&file, &text).expect("it is written");
+        let expected = openscad::made_of(&file).expect(drawing);
+        let read = read::file(
+            &file,
+            &ReadOptions { curves: Curves::Faceted, ..ReadOptions::default() },
+        );
+        let read = read.unwrap_or_else(|error| panic!("{drawing}: {error}"));
+        assert!(read.warnings.is_empty(), "{drawing}: {:?}", read.warnings);
+        let [found, made] = [&read.solid, &expected].map(|solid| {
+            let bounds = support::scene(solid).bounds();
+            (openscad::enclosed(solid), bounds.min, bounds.max)
+        });
+        let is_near = (found.0 - made.0).abs() <= 3e-4 * made.0;
+        let reach = (found.1 - made.1).abs().max((found.2 - made.2).abs());
+        if !is_near || reach.max_element() > 1e-3 {
+            wrong.push(format!("{drawing}: {found:?}, not {made:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn true_drawings_have_the_area_of_their_curves() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("a.csg");
+    for (drawing, area) in [
+        (r#"<circle cx="5" cy="5" r="4"/>"#, 16.0 * PI),
+        (r#"<ellipse rx="6" ry="2" transform="rotate(30)"/>"#, 12.0 * PI),
+        (r#"<path d="M0 0A5 5 0 0 1 10 0z"/>"#, 12.5 * PI),
+        (r#"<rect width="9" height="7" rx="2"/>"#, 63.0 - 16.0 + 4.0 * PI),
+        // A parabola over a chord: two thirds of the parallelogram around it.
+        (r#"<path d="M0 0Q3 9 6 0z"/>"#, 18.0),
+        (r#"<path d="M0 0C2 6 4 6 6 0z"/>"#, 16.2),
+    ] {
+        let svg = format!(
+            "<svg viewBox=\"0 0 9 9\" width=\"9mm\" height=\"9mm\"><g>{drawing}</g></svg>"
+        );
+        std::fs::write(folder.path().join("a.svg"), svg).expect("it is written");
+        let text = thick("import(\"a.svg\");");
+        let options = ReadOptions { facet_tolerance: 1e-4, ..ReadOptions::default() };
+        let read = read::bytes(text.as_bytes(), &file, Format::Csg, &options);
+        let solid = read.unwrap_or_else(|error| panic!("{drawing}: {error}")).solid;
+        let sampling = Sampling { rel_tol: 3e-4, ..Sampling::default() };
+        let volume = measure::volume(&support::scene(&solid), &sampling);
+        let off = (volume.value - 2.0 * area).abs();
+        assert!(off <= 1e-3 * area, "{drawing}: {volume:?}, not {}", 2.0 * area);
+    }
+}
+
+/// What OpenSCAD makes something of that no rule explains is left to it.
+#[test]
+fn strange_drawings_are_left_to_openscad() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("a.csg");
+    let options =
+        ReadOptions { openscad: Some("/nonexistent".into()), ..ReadOptions::default() };
+    let refused = |drawing: &str| {
+        std::fs::write(folder.path().join("a.svg"), drawing).expect("it is written");
+        let text = b"\nimport(\"a.svg\");";
+        let error = read::bytes(text, &file, Format::Csg, &options);
+        error.map(|_| ()).expect_err(drawing).to_string()
+    };
+    for drawing in [
+        r#"<path d="M0 0a5 5 0 015 5z"/>"#,
+        r#"<path d="M+5+3h5v5z"/>"#,
+        r#"<path d="M0 0A0 5 0 0 1 5 5L0 9z"/>"#,
+        r#"<path d="M0 0L5 0z 5 5"/>"#,
+        r#"<path d="M0 0X"/>"#,
+        r#"<rect width="1e300" height="1" transform="scale(1e300)"/>"#,
+    ] {
+        let said = refused(&format!("<svg><g>{drawing}</g></svg>"));
+        let expected = " in .svg files is left to `/nonexistent`, which was not found";
+        assert!(said.contains(":2:1: ") && said.contains(expected), "{said}");
+    }
+    let said = refused("<svg>\n<g></svg>");
+    assert!(
+        said.contains("a.csg:2:1: import: ") && said.contains("a.svg:2:4: "),
+        "{said}"
+    );
+    let said = refused("<svg><rect width='&big;'/></svg>");
+    assert!(said.contains("a.svg:1:6: not sound XML: "), "{said}");
 }
 
 /// That a plane shape has an area.

@@ -27,6 +27,7 @@ mod program;
 mod scad;
 mod similar;
 mod stl;
+mod svg;
 mod threemf;
 mod turn;
 mod words;

@@ -25,17 +25,21 @@ pub(crate) fn is_installed(without: &str) -> bool {
 
 /// The volume that it gives a file; nothing is 0.
 pub(crate) fn volume_of(file: &Path) -> f64 {
+    made_of(file).map_or(0.0, |solid| enclosed(&solid))
+}
+
+/// What it makes of a file, if that is anything.
+pub(crate) fn made_of(file: &Path) -> Option<Solid> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mesh = folder.path().join("made.off");
     let done = Command::new("openscad").arg("-o").args([&mesh, file]).output();
     let done = done.expect("it starts");
     let said = String::from_utf8_lossy(&done.stderr);
     if said.contains("object is empty") {
-        return 0.0;
+        return None;
     }
     assert!(done.status.success(), "{}: {said}", file.display());
-    let found = read::file(&mesh, &ReadOptions::default()).expect("a closed mesh");
-    enclosed(&found.solid)
+    Some(read::file(&mesh, &ReadOptions::default()).expect("a closed mesh").solid)
 }
 
 /// The volume that the surface of a solid of meshes encloses, which Manifold finds.

@@ -7,8 +7,9 @@ use glam::DVec2;
 use super::super::dxf;
 use super::super::error::{Located, ReadErrorKind};
 use super::super::faces::{Faces, TURNED};
-use super::super::options::Format;
+use super::super::options::{Curves, Format};
 use super::super::outline::Outline;
+use super::super::svg;
 use super::super::threemf;
 use super::arguments::Call;
 use super::curve;
@@ -48,8 +49,12 @@ fn imported(
     call: &Call<'_>,
     reading: &mut Reading<'_>,
 ) -> Result<Shape, Located> {
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("dxf")) {
+    let is = |ending| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+    if is("dxf") {
         return drawing(path, call, reading);
+    }
+    if is("svg") {
+        return picture(path, call, reading);
     }
     let format = Format::of(path);
     let Some(format @ (Format::Obj | Format::Stl | Format::Off | Format::ThreeMf)) =
@@ -64,9 +69,10 @@ fn imported(
                 let error = ReadErrorKind::Import(Box::new(error.named(path)));
                 Located::at(call.place(), error)
             };
-            let read = match format {
-                Format::ThreeMf => archive(path, call, reading),
-                _ => mesh(path, format, call, reading),
+            let read = if format == Format::ThreeMf {
+                archive(path, call, reading)
+            } else {
+                mesh(path, format, call, reading)
             };
             let solid = read.map_err(import)?;
             reading.imports.insert(path.to_owned(), solid.clone());
@@ -117,7 +123,7 @@ fn archive(
 /// That a file is one that only OpenSCAD reads, or none that can be read.
 fn left(path: &Path, call: &Call<'_>) -> Located {
     /// What OpenSCAD imports, but is not read here.
-    const ENDINGS: [&str; 3] = ["amf", "nef3", "svg"];
+    const ENDINGS: [&str; 2] = ["amf", "nef3"];
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     let ending = ending.to_ascii_lowercase();
     if !ENDINGS.contains(&ending.as_str()) {
@@ -135,6 +141,41 @@ fn left(path: &Path, call: &Call<'_>) -> Located {
     }
 }
 
+/// A fault in a drawing. What cannot be read here, OpenSCAD may read.
+fn in_drawing(path: &Path, call: &Call<'_>, error: Located) -> Located {
+    if matches!(error.kind, ReadErrorKind::Unsupported(_)) {
+        return Located::at(call.place(), error.kind);
+    }
+    let error = Box::new(error.named(path));
+    Located::at(call.place(), ReadErrorKind::Import(error))
+}
+
+/// The shapes of an `.svg`. OpenSCAD 2021.01 takes neither layer, origin nor scale, nor how fine
+/// curves are to be.
+fn picture(
+    path: &Path,
+    call: &Call<'_>,
+    reading: &mut Reading<'_>,
+) -> Result<Shape, Located> {
+    /// The units in an inch unless another number is given that is not too small.
+    const DPI: f64 = 72.0;
+    let dpi = call.number("dpi")?.filter(|dpi| *dpi >= 0.001).unwrap_or(DPI);
+    let tolerance = match reading.options.curves {
+        Curves::Faceted => None,
+        Curves::Auto | Curves::Exact => Some(reading.options.facet_tolerance),
+    };
+    let import = svg::Import { dpi, center: call.truth("center")?, tolerance };
+    let loaded = reading.budget.load(path).map_err(Located::nowhere);
+    let bytes = loaded.map_err(|error| in_drawing(path, call, error))?;
+    let mut count = |lines| reading.count_facets(2 * lines as u64, call.place());
+    let outline = svg::read(&bytes, &import, &mut count)
+        .map_err(|error| in_drawing(path, call, error))?;
+    Ok(match outline {
+        Some(outline) => Shape::Flat(outline.tagged(Tag::Place(call.place()))),
+        None => Shape::Empty,
+    })
+}
+
 /// The closed lines of a `.dxf`.
 fn drawing(
     path: &Path,
@@ -144,14 +185,7 @@ fn drawing(
     let layer = call.text("layer")?.unwrap_or_default();
     let origin = DVec2::from_array(call.sizes("origin")?.unwrap_or([0.0; 2]));
     let scale = call.number("scale")?.unwrap_or(1.0);
-    let named = |error: Located| {
-        // What cannot be read here, OpenSCAD may read.
-        if matches!(error.kind, ReadErrorKind::Unsupported(_)) {
-            return Located::at(call.place(), error.kind);
-        }
-        let error = Box::new(error.named(path));
-        Located::at(call.place(), ReadErrorKind::Import(error))
-    };
+    let named = |error| in_drawing(path, call, error);
     let loaded = reading.budget.load(path).map_err(Located::nowhere);
     let bytes = loaded.map_err(named)?;
     let tolerance = reading.options.facet_tolerance;

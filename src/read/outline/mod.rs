@@ -24,7 +24,7 @@ use crate::solid::Tag;
 pub(super) use discs::{Disc, exact_hull, hull_of_discs};
 pub(super) use extrude::Extrusion;
 pub(super) use hull::{hull, sum};
-pub(super) use offset::{Join, offset, offset_with_arcs};
+pub(super) use offset::{Join, offset, offset_with_arcs, stroke};
 pub(super) use paths::{Paths, filled};
 pub(super) use revolve::{in_wedge, revolved, turned};
 pub(super) use split::{by_length, by_number, split};

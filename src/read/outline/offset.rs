@@ -64,8 +64,27 @@ impl Outline {
 
 /// Polygons grown by a distance, or shrunk if it is negative.
 pub(in crate::read) fn offset(paths: &Paths, distance: f64, join: Join) -> Paths {
-    let moved: Paths = paths.iter().map(|path| moved(path, distance, join)).collect();
+    let moved: Paths = paths.iter().map(|path| moved(path, distance, |_| join)).collect();
     filled_by(&moved, FillRule::Positive)
+}
+
+/// What is within a distance of a line, with caps at its ends: a chamfer makes them square, a
+/// round with one piece flat. A point alone has a square around it.
+pub(in crate::read) fn stroke(
+    line: &[DVec2],
+    distance: f64,
+    join: Join,
+    cap: Join,
+) -> Paths {
+    if let &[point] = line {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        return vec![corners.map(|c| point + distance * DVec2::from_array(c)).to_vec()];
+    }
+    let back = line.iter().rev().skip(1).take(line.len().saturating_sub(2));
+    let around: Vec<DVec2> = line.iter().chain(back).copied().collect();
+    let ends = [0, line.len().saturating_sub(1)];
+    let joins = |i| if ends.contains(&i) { cap } else { join };
+    filled_by(&vec![moved(&around, distance, joins)], FillRule::Positive)
 }
 
 /// Polygons grown or shrunk, with true arcs at all corners where facets would be farther from
@@ -112,10 +131,11 @@ fn corners(path: &[DVec2]) -> impl Iterator<Item = (DVec2, [DVec2; 2])> + '_ {
     })
 }
 
-fn moved(path: &[DVec2], distance: f64, join: Join) -> Vec<DVec2> {
+fn moved(path: &[DVec2], distance: f64, join: impl Fn(usize) -> Join) -> Vec<DVec2> {
     let mut moved = Vec::with_capacity(2 * path.len());
-    for (corner, [n, m]) in corners(path) {
-        let (sin, cos) = (n.perp_dot(m), n.dot(m));
+    for (i, (corner, [n, m])) in corners(path).enumerate() {
+        // Adding zero makes −0 and 0 one number: at ends of lines, half a turn is to the left.
+        let (sin, cos) = (n.perp_dot(m) + 0.0, n.dot(m));
         let ends = [corner + distance * n, corner + distance * m];
         if sin.abs() < 1e-12 && cos > 0.0 {
             moved.push(ends[0]);
@@ -123,7 +143,7 @@ fn moved(path: &[DVec2], distance: f64, join: Join) -> Vec<DVec2> {
             // The lines cross here; what they enclose beyond runs clockwise.
             moved.extend([ends[0], corner, ends[1]]);
         } else {
-            match join {
+            match join(i) {
                 Join::Mitre { limit } if 1.0 + cos >= 2.0 / (limit * limit) => {
                     moved.push(corner + distance / (1.0 + cos) * (n + m));
                 }
