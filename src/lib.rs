@@ -40,8 +40,8 @@
 //!
 //! # Files
 //!
-//! [`read::file`] takes OpenSCAD's `.csg` and `.scad` and the mesh formats `.obj`, `.stl`
-//! and `.off`.
+//! [`read::file`] takes OpenSCAD's `.csg` and `.scad` and the mesh formats `.obj`, `.stl`,
+//! `.off` and `.3mf`.
 //!
 //! # Numbers
 //!
