@@ -4,7 +4,6 @@
 //! lines.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use glam::DVec2;
 
