@@ -255,7 +255,7 @@ fn true_drawings_have_the_area_of_their_curves() {
         (r#"<rect width="9" height="7" rx="2"/>"#, 63.0 - 16.0 + 4.0 * PI),
         // A parabola over a chord: two thirds of the parallelogram around it.
         (r#"<path d="M0 0Q3 9 6 0z"/>"#, 18.0),
-        (r#"<path d="M0 0C2 6 4 6 6 0z"/>"#, 16.2),
+        (r#"<path d="M0 0C2 6 4 6 6 0z"/>"#, 18.0),
     ] {
         let svg = format!(
             "<svg viewBox=\"0 0 9 9\" width=\"9mm\" height=\"9mm\"><g>{drawing}</g></svg>"
