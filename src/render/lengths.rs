@@ -100,7 +100,7 @@ mod tests {
         // All of them together are the volume.
         let volume = lengths.iter().sum::<f32>() * 0.25;
         assert!((volume - (640.0 - 48.0)).abs() < 1e-3, "{volume}");
-        let eye = Camera { distance: 5.0, ..above(0.5) }
+        let eye = Camera { distance: 4.5, ..above(0.5) }
             .with_projection(Projection::Perspective);
         let inside = thickness(&scene, &eye, SIZE, 1, &|_| ());
         assert!((inside[12 * 32 + 16] - 6.5).abs() < 0.02, "{}", inside[12 * 32 + 16]);
