@@ -281,7 +281,7 @@ fn check_says_which_curves_are_true_and_by_which_rule() {
     desk.put(
         "nut.csg",
         "difference() { cylinder(h = 3, r1 = 8, r2 = 8, $fn = 6); cylinder(h = 9, r1 = 3, r2 = 3, center = true); }
-        hull() { sphere(r = 1); multmatrix([[1, 0, 0, 20]]) sphere(r = 1); }
+        hull() { sphere(r = 1); multmatrix([[1, 0, 0, 20]]) cylinder(h = 1, r1 = 1, r2 = 1); }
         linear_extrude(height = 3, twist = 90) square(2);",
     );
     let check = |args: &[&str]| {
