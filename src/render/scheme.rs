@@ -19,7 +19,8 @@ impl Scheme {
     /// OpenSCAD's default: yellow solids with green cuts on a pale ground.
     pub const CORNFIELD: Self = Self::ALL[0].1;
 
-    /// OpenSCAD's schemes by their names, in its order (its folder `color-schemes/render`).
+    /// OpenSCAD's schemes by their names (its folder `color-schemes/render` of July 2026; 2021.01 has
+    /// neither the gems nor `ClearSky`).
     #[rustfmt::skip]
     pub const ALL: [(&'static str, Self); 14] = [
         ("Cornfield", Self::new([0xffffe5, 0xffffe5], 0xf9d72c, 0x9dcb51)),

@@ -142,6 +142,12 @@ impl Render {
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
         let target = Target::new(&self.output, self.view.turntable)?;
+        if target.is_standard_output() && global.json {
+            bail!("standard output cannot take both the picture and --json");
+        }
+        if target.takes_numbers() && self.numbers(&target).is_none() {
+            bail!("only --look depth and --look thickness are written as .tiff");
+        }
         if !self.watch {
             return self.drawn(&target, global, out);
         }
@@ -165,14 +171,6 @@ impl Render {
         global: Global,
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
-        if target.is_standard_output() && global.json {
-            bail!("standard output cannot take both the picture and --json");
-        }
-        if target.takes_numbers()
-            && !matches!(self.look, LookArg::Depth | LookArg::Thickness)
-        {
-            bail!("only --look depth and --look thickness are written as .tiff");
-        }
         let mut objects = Vec::new();
         let change = |solid: Solid| match self.look == LookArg::Object {
             true => colored(&solid, &mut objects),
@@ -181,11 +179,13 @@ impl Render {
         let (loaded, solid) = self.reading.load_changed(&self.file, global, change)?;
         let Loaded { scene: whole, read_seconds, compile_seconds } = loaded;
         let camera = self.view.camera(&whole.bounds());
+        let start = Instant::now();
         let scene = match self.is_cut() {
             true => self.opened(&solid, &whole, &camera)?,
             false => whole,
         };
         drop(solid);
+        let compile = compile_seconds + start.elapsed().as_secs_f64();
 
         let (mut trace, mut write, mut range) = (0.0, 0.0, None);
         let pictures = self.view.turntable.unwrap_or(1);
@@ -202,8 +202,7 @@ impl Render {
         }
         drop(meter);
 
-        let seconds =
-            Seconds { read: read_seconds, compile: compile_seconds, trace, write };
+        let seconds = Seconds { read: read_seconds, compile, trace, write };
         if global.json {
             let [width, height] = self.view.imgsize;
             let report = Report {

@@ -13,7 +13,7 @@ const LOG_OF_RMS: [[f64; 2]; 8] = [
     [-0.10657, 0.12259],
     [-0.08791, 0.09873],
     [-0.07480, 0.08259],
-    [-0.06509, 0.07095],
+    [-0.06509, 0.07096],
 ];
 
 /// The slope of the logarithm of the error over that of the samples, by least squares, of trials
