@@ -183,6 +183,7 @@ impl Reading {
             max_facets: self.max_facets,
             facet_tolerance: self.facet_tolerance,
             plate: self.plate,
+            marks: false,
             definitions: self.define.clone(),
             parameters: self.parameters.clone().zip(self.set.clone()),
         };

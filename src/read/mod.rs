@@ -38,7 +38,7 @@ use std::path::Path;
 use crate::solid::Solid;
 
 pub use error::{ReadError, ReadErrorKind};
-pub use model::{Counts, Model, Warning};
+pub use model::{Counts, Marks, Model, Warning};
 pub use options::{Curves, Format, Imports, ReadOptions, Rules};
 
 use error::Located;

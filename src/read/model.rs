@@ -9,6 +9,8 @@ use crate::solid::{Place, Solid};
 pub struct Model {
     /// The solid; empty when the file describes nothing.
     pub solid: Solid,
+    /// What its author marked for the eye.
+    pub marks: Marks,
     /// What was ignored or put right.
     pub warnings: Vec<Warning>,
     /// What was read as what.
@@ -17,7 +19,28 @@ pub struct Model {
 
 impl Default for Model {
     fn default() -> Self {
-        Self { solid: Solid::empty(), warnings: Vec::new(), counts: Counts::default() }
+        Self {
+            solid: Solid::empty(),
+            marks: Marks::default(),
+            warnings: Vec::new(),
+            counts: Counts::default(),
+        }
+    }
+}
+
+/// What an OpenSCAD model marks for the eye; none of it is read unless
+/// [`ReadOptions::marks`](super::ReadOptions::marks) asks for it.
+#[derive(Clone, Debug)]
+pub struct Marks {
+    /// What stands after `#`, whole, whatever is left of it in the model.
+    pub highlighted: Solid,
+    /// What stands after `%`, which is no part of the model.
+    pub background: Solid,
+}
+
+impl Default for Marks {
+    fn default() -> Self {
+        Self { highlighted: Solid::empty(), background: Solid::empty() }
     }
 }
 

@@ -31,6 +31,9 @@ pub struct ReadOptions {
     pub facet_tolerance: f64,
     /// The thickness that plane models get, from z = 0 up; without one they are refused.
     pub plate: Option<f64>,
+    /// Whether what `%` and `#` mark in a `.csg` is read as well, into
+    /// [`Model::marks`](super::Model::marks).
+    pub marks: bool,
     /// Values for variables of `.scad` files, as `name=value` in OpenSCAD's language.
     pub definitions: Vec<String>,
     /// A file of OpenSCAD's customizer and the name of the set of parameters in it.
@@ -40,7 +43,7 @@ pub struct ReadOptions {
 impl Default for ReadOptions {
     /// `Curves::Auto`; the rules of 2021; five minutes for OpenSCAD; imports from the model's folder;
     /// 1 GiB, which as binary `.stl` is 21 million triangles; 30 million
-    /// facets; and facets within 0.005 of what they stand for.
+    /// facets; facets within 0.005 of what they stand for; and no marks.
     fn default() -> Self {
         Self {
             curves: Curves::default(),
@@ -53,6 +56,7 @@ impl Default for ReadOptions {
             max_facets: 30_000_000,
             facet_tolerance: 0.005,
             plate: None,
+            marks: false,
             definitions: Vec::new(),
             parameters: None,
         }

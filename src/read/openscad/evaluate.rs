@@ -1,4 +1,4 @@
-//! Walks the statements and makes shapes from the leaves up.
+//! From a document to a model, and what is gathered on the way.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -8,14 +8,13 @@ use std::sync::Arc;
 use super::super::error::{Located, ReadErrorKind};
 use super::super::load::Budget;
 use super::super::outline::Extrusion;
-use super::super::words::quoted;
 use super::super::{Model, ReadOptions, Warning};
-use super::arguments::Call;
 use super::combine;
 use super::curve::Key;
-use super::elsewhere;
-use super::node::{Node, Shape, node};
+use super::marks::Aside;
+use super::node::Shape;
 use super::value::Document;
+use super::walk::shapes;
 use crate::mesh::Mesh;
 use crate::solid::{Place, Solid};
 
@@ -44,6 +43,8 @@ pub(super) struct Reading<'a> {
     /// Why the first was left out of those polyhedra that bound no solid, and of files that are
     /// not there.
     left_out: Option<Located>,
+    /// What is being made after `%`.
+    pub(super) aside: Option<Aside>,
     /// Whether only the hull of what is being made matters.
     pub(super) is_hulled: bool,
     /// Whether facets stand for curves in what is being made.
@@ -70,21 +71,22 @@ impl Reading<'_> {
         self.left_out.get_or_insert(error);
     }
 
+    /// What is to be as it was once a statement after `%` is made.
+    pub(super) fn set_aside(&mut self, statement: usize) -> Aside {
+        let left_out = self.left_out.take();
+        Aside { statement, counts: self.model.counts, left_out }
+    }
+
+    pub(super) fn put_back(&mut self, Aside { counts, left_out, .. }: Aside) {
+        self.model.counts = counts;
+        self.left_out = left_out;
+        self.is_fine.set(false);
+    }
+
     pub(super) fn warn(&mut self, place: Place, message: impl Into<String>) {
         let message = message.into();
         self.model.warnings.push(Warning { place: Some(place), message });
     }
-}
-
-/// A statement whose braces are open.
-struct Frame {
-    node: Node,
-    statement: usize,
-    children: Vec<Shape>,
-    /// Whether only the hull of its children matters.
-    hulls: bool,
-    /// Whether its children become polygons or polyhedra.
-    facets: bool,
 }
 
 /// The model that a document describes.
@@ -107,12 +109,14 @@ pub(super) fn model(
         fonts: None,
         budget,
         left_out: None,
+        aside: None,
         is_hulled: false,
         is_fine: Cell::new(false),
         is_faceted: false,
     };
     let (next, end) = content(document);
-    let shapes = shapes(document, next, end, &mut reading)?;
+    let (shapes, marked) = shapes(document, next, end, &mut reading)?;
+    reading.model.marks = marked.into_marks();
     let start = Place { line: 1, column: 1 };
     reading.model.solid = match combine::all(shapes, "the file", start, &mut reading) {
         Shape::Solid(solid) => solid,
@@ -146,69 +150,4 @@ fn content(document: &Document<'_>) -> (usize, usize) {
         }
     }
     (0, document.statements.len())
-}
-
-/// The shapes of the outermost statements in a range.
-fn shapes(
-    document: &Document<'_>,
-    mut next: usize,
-    end: usize,
-    reading: &mut Reading<'_>,
-) -> Result<Vec<Shape>, Located> {
-    let mut outermost = Vec::new();
-    let mut open: Vec<Frame> = Vec::new();
-    loop {
-        let ends = |f: &mut Frame| document.statements[f.statement].end as usize <= next;
-        while let Some(frame) = open.pop_if(ends) {
-            let statement = &document.statements[frame.statement];
-            let parameters = frame.node.parameters;
-            let call = Call { document, statement, parameters };
-            call.warn_of_unknown(reading);
-            reading.is_hulled = open.last().is_some_and(|frame| frame.hulls);
-            reading.is_faceted = open.last().is_some_and(|frame| frame.facets);
-            let shape = match (frame.node.make)(&call, frame.children, reading) {
-                Err(Located { kind: ReadErrorKind::Unsupported(what), .. }) => {
-                    elsewhere::evaluated(document, frame.statement, what, reading)?
-                }
-                made => made?,
-            };
-            reading.model.counts.fine += usize::from(reading.is_fine.take());
-            let outer = open.last_mut().map_or(&mut outermost, |f| &mut f.children);
-            outer.push(shape);
-        }
-        if next >= end {
-            return Ok(outermost);
-        }
-        let statement = &document.statements[next];
-        // What takes no part in the model may be anything, even what cannot be read.
-        if statement.modifiers.disabled || statement.modifiers.background {
-            next = statement.end as usize;
-            continue;
-        }
-        let Some(node) = node(statement.name) else {
-            if elsewhere::is_known(statement.name) {
-                let what = quoted(statement.name.as_bytes());
-                let shape = elsewhere::evaluated(document, next, what, reading)?;
-                let outer = open.last_mut().map_or(&mut outermost, |f| &mut f.children);
-                outer.push(shape);
-                next = statement.end as usize;
-                continue;
-            }
-            let kind = ReadErrorKind::Unsupported(quoted(statement.name.as_bytes()));
-            return Err(Located::at(statement.place, kind));
-        };
-        let hulls = match statement.name {
-            "hull" => true,
-            "group" | "union" | "multmatrix" | "color" | "render" => {
-                open.last().is_some_and(|frame| frame.hulls)
-            }
-            _ => false,
-        };
-        let facets = match statement.name {
-            "minkowski" | "offset" | "projection" => true,
-            _ => open.last().is_some_and(|frame| frame.facets),
-        };
-        open.push(Frame { node, statement: next, children: Vec::new(), hulls, facets });
-        next += 1;
-    }
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  bytes ── lex ── parse ──► Document ── evaluate ──► Shape ──► Model
-//!                            (flat)      │
+//!                            (flat)      │ walk
 //!                                        └─ node: which function makes which node
 //! ```
 //!
@@ -23,6 +23,7 @@ mod extrude;
 mod file;
 mod import;
 mod lex;
+mod marks;
 mod node;
 mod offset;
 mod outlines;
@@ -38,6 +39,7 @@ mod tests;
 mod text;
 mod transform;
 mod value;
+mod walk;
 
 use std::path::Path;
 

@@ -92,7 +92,7 @@ impl<'a> Parser<'a> {
                 Token::Symbol(b'*') => modifiers.disabled = true,
                 Token::Symbol(b'!') => modifiers.root = true,
                 Token::Symbol(b'%') => modifiers.background = true,
-                Token::Symbol(b'#') => {}
+                Token::Symbol(b'#') => modifiers.highlighted = true,
                 Token::Name(name) => {
                     let place = self.place();
                     self.lexer.advance()?;

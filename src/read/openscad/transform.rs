@@ -41,7 +41,7 @@ pub(super) fn multmatrix(
 
 /// The matrix argument. Rows or elements left out are those of the identity; the last row
 /// can only divide the others, as OpenSCAD has no perspective.
-fn matrix(call: &Call<'_>) -> Result<DAffine3, Located> {
+pub(super) fn matrix(call: &Call<'_>) -> Result<DAffine3, Located> {
     let mut rows = [[0.0; 4]; 4];
     for (i, row) in rows.iter_mut().enumerate() {
         row[i] = 1.0;
@@ -85,7 +85,7 @@ fn lifted(map: DAffine3) -> DAffine3 {
 }
 
 /// Whether a map is finite and flattens nothing, by the measure that leaves are placed by.
-fn is_regular(map: &DAffine3) -> bool {
+pub(super) fn is_regular(map: &DAffine3) -> bool {
     map.is_finite() && inverse(&map.matrix3).is_some()
 }
 

@@ -30,7 +30,7 @@ pub(super) struct Statement<'a> {
     pub(super) end: u32,
 }
 
-/// The characters before a statement. `#`, which only highlights, is not kept.
+/// The characters before a statement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Modifiers {
     /// `*`: as if it were not there.
@@ -39,6 +39,8 @@ pub(super) struct Modifiers {
     pub(super) root: bool,
     /// `%`: shown by OpenSCAD, but no part of the model.
     pub(super) background: bool,
+    /// `#`: shown by OpenSCAD whole, whatever is left of it in the model.
+    pub(super) highlighted: bool,
 }
 
 /// `value` or `name = value`.
