@@ -106,7 +106,9 @@ mod pictures {
     use image::RgbImage;
     use solidray::Color;
     use solidray::Mesh;
-    use solidray::render::{Light, Look, Scheme, Style, picture, shade};
+    use solidray::render::{
+        Light, Look, Scheme, Shown, Style, Translucent, picture, picture_bands, shade,
+    };
 
     use super::*;
 
@@ -283,6 +285,80 @@ mod pictures {
         assert!(shallow > deep + 5 && deep > deeper + 20, "{shallow} {deep} {deeper}");
     }
 
+    #[test]
+    fn what_is_seen_through_covers_in_part() {
+        let red = Color::rgb(1.0, 0.0, 0.0);
+        let wall = Solid::cuboid(dvec3(20.0, 1.0, 20.0)).translated(dvec3(0.0, 5.0, 0.0));
+        let wall = compile(&wall.colored(red));
+        let blue = |alpha| Color { rgba: [0.0, 0.0, 1.0, alpha] };
+        let ball = |x, alpha| {
+            let ball = Solid::ball(3.0).translated(dvec3(x, -2.0, 0.0));
+            compile(&ball.colored(blue(alpha)))
+        };
+        let behind = compile(&Solid::ball(2.0).translated(dvec3(0.0, 9.0, 0.0)));
+        let camera = Camera {
+            rotation_deg: dvec3(90.0, 0.0, 0.0),
+            distance: 40.0,
+            ..Camera::default()
+        };
+        let style = Style { samples: 4, ..Style::default() };
+        let image = |solid: &Scene, layers: &[(&Scene, f32)]| {
+            let layer = |&(scene, alpha)| Translucent { scene, color: blue(alpha) };
+            let translucent: Vec<_> = layers.iter().map(layer).collect();
+            let shown = Shown { solid, translucent: &translucent };
+            picture(shown, &camera, SIZE, &style, &|_| ())
+        };
+        let before = ball(0.0, 1.0);
+        let whole = compile(&Solid::boolean(
+            solidray::Op::Union,
+            [
+                Solid::cuboid(dvec3(20.0, 1.0, 20.0))
+                    .translated(dvec3(0.0, 5.0, 0.0))
+                    .colored(red),
+                Solid::ball(3.0).translated(dvec3(0.0, -2.0, 0.0)).colored(blue(1.0)),
+            ],
+        ));
+        let [none, half, all] = [0.0, 0.5, 1.0].map(|a| image(&wall, &[(&before, a)]));
+        assert_eq!(differing(&none, &image(&wall, &[]), 0), 0);
+        assert_eq!(differing(&all, &image(&whole, &[]), 1), 0);
+        assert_eq!(differing(&none, &image(&wall, &[(&behind, 1.0)]), 0), 0);
+        for channel in 0..3 {
+            let at = |image: &RgbImage| f64::from(image.get_pixel(32, 24).0[channel]);
+            let mean = 0.5 * (at(&none) + at(&all));
+            assert!((at(&half) - mean).abs() <= 1.0, "{channel}: {} {mean}", at(&half));
+        }
+
+        // It does not matter which is named first, and no look without light shows them.
+        let (a, b) = (ball(-1.0, 1.0), ball(1.0, 1.0));
+        let [ab, ba] = [[(&a, 0.3), (&b, 0.6)], [(&b, 0.6), (&a, 0.3)]];
+        assert_eq!(differing(&image(&wall, &ab), &image(&wall, &ba), 0), 0);
+        let translucent = [Translucent { scene: &before, color: blue(0.5) }];
+        for look in [Look::Normal, Look::Depth] {
+            let style = Style { look, ..style };
+            let shown = Shown { solid: &wall, translucent: &translucent };
+            let [with, without] = [shown, Shown::from(&wall)]
+                .map(|shown| picture(shown, &camera, SIZE, &style, &|_| ()));
+            assert_eq!(differing(&with, &without, 0), 0, "{look:?}");
+        }
+    }
+
+    #[test]
+    fn bands_are_the_picture() {
+        let (scene, ball) = (compile(&plate()), compile(&Solid::ball(30.0)));
+        let color = Color { rgba: [0.0, 1.0, 0.0, 0.5] };
+        let shown =
+            Shown { solid: &scene, translucent: &[Translucent { scene: &ball, color }] };
+        let camera = Camera::framing(&shown.bounds());
+        let style = Style { edges: true, ..Style::default() };
+        let size = [4096, 700];
+        let whole = picture(shown, &camera, size, &style, &|_| ());
+        let bands: Vec<RgbImage> =
+            picture_bands(shown, &camera, size, &style, &|_| ()).collect();
+        assert!(bands.len() > 2);
+        let bytes: Vec<u8> = bands.into_iter().flat_map(RgbImage::into_raw).collect();
+        assert!(whole.into_raw() == bytes);
+    }
+
     /// Pictures are traced in bands; at this width they are 64 rows high. Lines belong to the pixels
     /// beside what ends, so those of two boxes that end where a band does are on its border rows.
     #[test]
@@ -310,7 +386,7 @@ mod pictures {
             [(63, -50, true), (62, -50, false), (64, 50, true), (65, 50, false)]
         {
             for x in x - 15..x + 15 {
-                let x = (x + (1 << 14)) as u32;
+                let x = (x + (1_i32 << 14)).cast_unsigned();
                 let is_line = plain.get_pixel(x, y) != lined.get_pixel(x, y);
                 assert_ne!(plain.get_pixel(x, y).0, [0xff, 0xff, 0xe5], "({x}, {y})");
                 assert_eq!(is_line, row_is_line, "({x}, {y})");
@@ -328,7 +404,7 @@ mod pictures {
                 rays.fetch_add(n, Ordering::Relaxed);
             };
             picture(&scene, &Camera::default(), SIZE, &style, &count);
-            assert_eq!(rays.into_inner(), style.rays(SIZE));
+            assert_eq!(rays.into_inner(), style.rays(SIZE, 0));
         }
     }
 

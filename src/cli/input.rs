@@ -154,18 +154,26 @@ pub(super) struct Loaded {
 impl Reading {
     /// Reads a model; its warnings go to standard error unless they are unwanted.
     pub(super) fn read(&self, file: &Path, global: Global) -> anyhow::Result<Model> {
-        let model = self.read_silently(file)?;
-        if !global.quiet {
-            for warning in &model.warnings {
-                report::warning(&file.to_string_lossy(), warning);
-            }
-        }
-        Ok(model)
+        Ok(warned(file, self.read_silently(file)?, global))
+    }
+
+    /// The same with what `%` and `#` mark.
+    pub(super) fn read_marked(
+        &self,
+        file: &Path,
+        global: Global,
+    ) -> anyhow::Result<Model> {
+        let options = ReadOptions { marks: true, ..self.options() };
+        Ok(warned(file, read(file, &options)?, global))
     }
 
     /// Reads a model and keeps its warnings to itself.
     pub(super) fn read_silently(&self, file: &Path) -> anyhow::Result<Model> {
-        let options = ReadOptions {
+        read(file, &self.options())
+    }
+
+    fn options(&self) -> ReadOptions {
+        ReadOptions {
             curves: match self.curves {
                 CurvesArg::Auto => Curves::Auto,
                 CurvesArg::Exact => Curves::Exact,
@@ -186,17 +194,7 @@ impl Reading {
             marks: false,
             definitions: self.define.clone(),
             parameters: self.parameters.clone().zip(self.set.clone()),
-        };
-        if file.as_os_str() != "-" {
-            return Ok(read::file(file, &options)?);
         }
-        let Some(format) = options.format else {
-            bail!("standard input needs --format csg, scad, obj, stl, off or 3mf");
-        };
-        let mut bytes = Vec::new();
-        let mut some = io::stdin().lock().take(self.max_bytes.saturating_add(1));
-        some.read_to_end(&mut bytes).context("standard input")?;
-        Ok(read::bytes(&bytes, Path::new("standard input"), format, &options)?)
     }
 
     /// Reads and compiles a model.
@@ -210,27 +208,14 @@ impl Reading {
         file: &Path,
         global: Global,
     ) -> anyhow::Result<(Loaded, Solid)> {
-        self.load_changed(file, global, |solid| solid)
-    }
-
-    /// The same of what becomes of the solid that was read.
-    pub(super) fn load_changed(
-        &self,
-        file: &Path,
-        global: Global,
-        change: impl FnOnce(Solid) -> Solid,
-    ) -> anyhow::Result<(Loaded, Solid)> {
         let start = Instant::now();
         let model = self.read(file, global)?;
         let read_seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let solid = change(model.solid);
-        let scene = self.compile(file, &solid)?;
+        let scene = self.compile(file, &model.solid)?;
         let compile_seconds = start.elapsed().as_secs_f64();
-        if scene.bounds().is_empty() && !global.quiet {
-            report::note(&format!("warning: {}: the model is empty", file.display()));
-        }
-        Ok((Loaded { scene, read_seconds, compile_seconds }, solid))
+        warn_if_empty(file, &scene, global);
+        Ok((Loaded { scene, read_seconds, compile_seconds }, model.solid))
     }
 
     /// Compiles a model; an error begins with the file's name.
@@ -261,6 +246,36 @@ impl Reading {
     /// What was chosen for compiling.
     pub(super) fn compiling(&self) -> CompileOptions {
         CompileOptions { weld: self.weld, most_nodes: self.max_nodes }
+    }
+}
+
+fn read(file: &Path, options: &ReadOptions) -> anyhow::Result<Model> {
+    if file.as_os_str() != "-" {
+        return Ok(read::file(file, options)?);
+    }
+    let Some(format) = options.format else {
+        bail!("standard input needs --format csg, scad, obj, stl, off or 3mf");
+    };
+    let mut bytes = Vec::new();
+    let mut some = io::stdin().lock().take(options.max_bytes.saturating_add(1));
+    some.read_to_end(&mut bytes).context("standard input")?;
+    Ok(read::bytes(&bytes, Path::new("standard input"), format, options)?)
+}
+
+/// A model whose warnings went to standard error, unless they are unwanted.
+fn warned(file: &Path, model: Model, global: Global) -> Model {
+    if !global.quiet {
+        for warning in &model.warnings {
+            report::warning(&file.to_string_lossy(), warning);
+        }
+    }
+    model
+}
+
+/// Says that there is nothing in a scene.
+pub(super) fn warn_if_empty(file: &Path, scene: &Scene, global: Global) {
+    if scene.bounds().is_empty() && !global.quiet {
+        report::note(&format!("warning: {}: the model is empty", file.display()));
     }
 }
 

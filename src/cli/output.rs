@@ -1,6 +1,6 @@
 //! Results: JSON on standard output, and files that appear whole or not at all.
 
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::Path;
 
 use anyhow::Context;
@@ -128,7 +128,12 @@ pub(super) fn point(p: DVec3) -> String {
 
 /// Writes a file beside its place and moves it there when it is complete. What was there
 /// keeps its permissions, and a link stays a link.
-pub(super) fn save(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+pub(super) fn save(path: &Path, mut bytes: &[u8]) -> anyhow::Result<()> {
+    save_from(path, &mut bytes)
+}
+
+/// The same with what is read from somewhere.
+pub(super) fn save_from(path: &Path, bytes: &mut dyn Read) -> anyhow::Result<()> {
     let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     write_beside(&target, bytes)
         // The name of the file beside it would be no help.
@@ -136,7 +141,7 @@ pub(super) fn save(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         .with_context(|| path.display().to_string())
 }
 
-fn write_beside(target: &Path, bytes: &[u8]) -> std::io::Result<()> {
+fn write_beside(target: &Path, bytes: &mut dyn Read) -> std::io::Result<()> {
     let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
     let mut builder = tempfile::Builder::new();
     builder.prefix(".solidray-").suffix(".part");
@@ -154,7 +159,7 @@ fn write_beside(target: &Path, bytes: &[u8]) -> std::io::Result<()> {
         }
     }
     let mut file = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
-    file.write_all(bytes)?;
+    std::io::copy(bytes, &mut file)?;
     file.persist(target).map_err(|error| error.error)?;
     Ok(())
 }

@@ -21,7 +21,7 @@ pub fn coverage(
     let offsets = spread(samples.max(1));
     let each = 1.0 / samples.max(1) as f32;
     let mut covered = Vec::with_capacity(size[0] as usize * size[1] as usize);
-    for rows in bands(size) {
+    for rows in bands(size, 1) {
         let start = covered.len();
         covered.resize(start + size[0] as usize * rows.len(), 0.0);
         for &offset in &offsets {

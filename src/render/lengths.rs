@@ -1,34 +1,42 @@
 //! Lengths along the line of sight, as numbers rather than colours.
 
+use std::ops::Range;
+
 use super::frame::trace_rows;
 use super::picture::{bands, spread};
-use super::{Camera, chunks};
+use super::{Camera, View, chunks};
 use crate::progress::Progress;
 use crate::scene::Scene;
 
 /// How deep in the picture the solid begins, through the middle of each pixel, row by row from the
 /// upper left: in model units along the line of sight, from the eye, or for parallel rays from where
-/// [`View`](super::View) has them start. Not a number where nothing is.
+/// [`View`] has them start. Not a number where nothing is.
 pub fn depth(
     scene: &Scene,
     camera: &Camera,
     size: [u32; 2],
     progress: Progress<'_>,
 ) -> Vec<f32> {
+    depth_bands(scene, camera, size, progress).flatten().collect()
+}
+
+/// The same in bands of whole rows, each found when it is asked for: for pictures that are too large to
+/// be held whole.
+pub fn depth_bands<'a>(
+    scene: &'a Scene,
+    camera: &Camera,
+    size: [u32; 2],
+    progress: Progress<'a>,
+) -> impl Iterator<Item = Vec<f32>> + 'a {
     let view = camera.view(size, &scene.bounds());
-    let mut depths = Vec::with_capacity(size[0] as usize * size[1] as usize);
-    for rows in bands(size) {
-        let frame = trace_rows(scene, &view, rows.clone(), [0.5, 0.5], progress);
-        for y in 0..rows.end - rows.start {
-            #[expect(
-                clippy::cast_possible_truncation,
-                reason = "a picture is no more exact"
-            )]
-            let depth = |x| frame.hit(x, y).map_or(f32::NAN, |hit| hit.t as f32);
-            depths.extend((0..size[0]).map(depth));
-        }
-    }
-    depths
+    bands(size, 1).map(move |rows| {
+        let height = rows.end - rows.start;
+        let frame = trace_rows(scene, &view, rows, [0.5, 0.5], progress);
+        #[expect(clippy::cast_possible_truncation, reason = "a picture is no more exact")]
+        let depth = |(x, y)| frame.hit(x, y).map_or(f32::NAN, |hit| hit.t as f32);
+        let pixels = (0..height).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+        pixels.map(depth).collect()
+    })
 }
 
 /// How much of the solid the line of sight passes through in each pixel, row by row from the upper
@@ -37,22 +45,47 @@ pub fn depth(
 pub fn thickness(
     scene: &Scene,
     camera: &Camera,
-    size @ [width, height]: [u32; 2],
+    size: [u32; 2],
     samples: u32,
     progress: Progress<'_>,
 ) -> Vec<f32> {
+    thickness_bands(scene, camera, size, samples, progress).flatten().collect()
+}
+
+/// The same in bands of whole rows, each found when it is asked for: for pictures that are too large to
+/// be held whole.
+pub fn thickness_bands<'a>(
+    scene: &'a Scene,
+    camera: &Camera,
+    size: [u32; 2],
+    samples: u32,
+    progress: Progress<'a>,
+) -> impl Iterator<Item = Vec<f32>> + 'a {
     let view = camera.view(size, &scene.bounds());
     let offsets = spread(samples.max(1));
-    let mut lengths = vec![0.0; width as usize * height as usize];
+    bands(size, 1)
+        .map(move |rows| thickness_of_rows(scene, &view, &rows, &offsets, progress))
+}
+
+fn thickness_of_rows(
+    scene: &Scene,
+    view: &View,
+    rows: &Range<u32>,
+    offsets: &[[f64; 2]],
+    progress: Progress<'_>,
+) -> Vec<f32> {
+    let [width, _] = view.size();
+    let mut lengths = vec![0.0; width as usize * rows.len()];
     chunks::for_each(
         &mut lengths,
         width.max(1) as usize,
         || scene.tracer(),
         |tracer, y, row| {
+            let y = f64::from(rows.start) + y as f64;
             for (pixel, x) in row.iter_mut().zip(0_u32..) {
                 let mut sum = 0.0;
-                for [right, down] in &offsets {
-                    let ray = view.ray(f64::from(x) + right, y as f64 + down);
+                for [right, down] in offsets {
+                    let ray = view.ray(f64::from(x) + right, y + down);
                     // What is behind the eye is not in the picture.
                     let seen = |enter: f64, exit: f64| (exit - enter.max(0.0)).max(0.0);
                     let spans = tracer.spans(&ray).iter();

@@ -37,6 +37,8 @@ mod scheme;
 #[cfg(feature = "image")]
 mod shade;
 #[cfg(feature = "image")]
+mod shown;
+#[cfg(feature = "image")]
 mod sky;
 mod view;
 
@@ -47,15 +49,17 @@ pub use frame::{Frame, trace};
 #[cfg(feature = "image")]
 pub use heat::{heat, heat_color};
 #[cfg(feature = "image")]
-pub use lengths::{depth, thickness};
+pub use lengths::{depth, depth_bands, thickness, thickness_bands};
 #[cfg(feature = "image")]
 pub use light::Light;
 #[cfg(feature = "image")]
 pub use look::{Look, distinct_color};
 #[cfg(feature = "image")]
-pub use picture::{Style, picture};
+pub use picture::{Style, picture, picture_bands};
 #[cfg(feature = "image")]
 pub use scheme::Scheme;
 #[cfg(feature = "image")]
 pub use shade::shade;
+#[cfg(feature = "image")]
+pub use shown::{Shown, Translucent};
 pub use view::View;

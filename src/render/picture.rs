@@ -6,9 +6,9 @@ use std::ops::Range;
 use glam::Vec3;
 use image::RgbImage;
 
-use super::frame::{TILE, trace_rows};
-use super::shade::{Shader, write};
-use super::{Camera, Light, Look, Scheme, View};
+use super::frame::{Frame, TILE, trace_rows};
+use super::shade::{Shader, add, write};
+use super::{Camera, Light, Look, Scheme, Shown, View};
 use crate::progress::Progress;
 use crate::scene::Scene;
 
@@ -46,11 +46,13 @@ impl Default for Style {
 }
 
 impl Style {
-    /// How many rays from the eye a picture takes, for those who watch its progress.
-    pub fn rays(&self, size @ [width, height]: [u32; 2]) -> u64 {
+    /// How many rays from the eye a picture takes in which so many solids are
+    /// [seen through](Shown::translucent), for those who watch its progress.
+    pub fn rays(&self, size @ [width, height]: [u32; 2], translucent: usize) -> u64 {
+        let layers = 1 + if self.look.is_lit() { translucent } else { 0 };
         let rows: u64 =
-            bands(size).map(|rows| self.traced(&rows, height).len() as u64).sum();
-        let samples = u64::from(self.samples.max(1));
+            bands(size, layers).map(|rows| self.traced(&rows, height).len() as u64).sum();
+        let samples = u64::from(self.samples.max(1)).saturating_mul(layers as u64);
         let survey = if self.needs_survey() { u64::from(height) } else { 0 };
         u64::from(width)
             .saturating_mul(rows.saturating_mul(samples).saturating_add(survey))
@@ -83,47 +85,112 @@ const BAND_PIXELS: u32 = 1 << 21;
 ///
 /// It takes some 60 MB beside the picture itself, whatever its size and `style.samples`
 /// (more for pictures more than 65,536 pixels wide).
-pub fn picture(
-    scene: &Scene,
+pub fn picture<'a>(
+    shown: impl Into<Shown<'a>>,
     camera: &Camera,
     size: [u32; 2],
     style: &Style,
     progress: Progress<'_>,
 ) -> RgbImage {
-    let view = camera.view(size, &scene.bounds());
-    let depths = if style.needs_survey() { survey(scene, &view, progress) } else { None };
-    let Style { look, ref scheme, light, edges, hatch, .. } = *style;
-    let shader = Shader { scene, look, scheme, depths, edges, light, hatch };
-    let offsets = spread(style.samples.max(1));
-    let factor = 1.0 / style.samples.max(1) as f32;
-
+    let painter = Painter::new(shown.into(), camera, size, style, progress);
     let mut image = RgbImage::new(size[0], size[1]);
     let bytes: &mut [u8] = &mut image;
-    for rows in bands(size) {
-        let pixels = size[0] as usize * rows.len();
-        let start = 3 * size[0] as usize * rows.start as usize;
-        let mut light = vec![Vec3::ZERO; pixels];
-        for (&offset, sample) in offsets.iter().zip(0..) {
-            let traced = style.traced(&rows, size[1]);
-            let frame = trace_rows(scene, &view, traced, offset, progress);
-            shader.add(&frame, rows.clone(), sample, &mut light);
-        }
-        write(&light, factor, &mut bytes[start..start + 3 * pixels]);
+    let row = 3 * size[0] as usize;
+    for rows in painter.bands() {
+        painter.paint(&rows, &mut bytes[row * rows.start as usize..][..row * rows.len()]);
     }
     image
 }
 
+/// The same picture in bands from top to bottom, each made when it is asked for: for pictures that are
+/// too large to be held whole.
+pub fn picture_bands<'a>(
+    shown: impl Into<Shown<'a>>,
+    camera: &Camera,
+    size: [u32; 2],
+    style: &Style,
+    progress: Progress<'a>,
+) -> impl Iterator<Item = RgbImage> + 'a {
+    let painter = Painter::new(shown.into(), camera, size, style, progress);
+    painter.bands().map(move |rows| {
+        let mut band = RgbImage::new(size[0], rows.end - rows.start);
+        painter.paint(&rows, &mut band);
+        band
+    })
+}
+
+/// All that a band of a picture is made of.
+struct Painter<'a> {
+    view: View,
+    style: Style,
+    /// Of the solid, then of what is seen through.
+    shaders: Vec<Shader<'a>>,
+    offsets: Vec<[f64; 2]>,
+    progress: Progress<'a>,
+}
+
+impl<'a> Painter<'a> {
+    fn new(
+        shown: Shown<'a>,
+        camera: &Camera,
+        size: [u32; 2],
+        style: &Style,
+        progress: Progress<'a>,
+    ) -> Self {
+        let Shown { solid, translucent } = shown;
+        let view = camera.view(size, &shown.bounds());
+        let depths =
+            if style.needs_survey() { survey(solid, &view, progress) } else { None };
+        let shader = Shader { scene: solid, style: *style, depths, color: None };
+        let mut shaders = vec![shader];
+        if style.look.is_lit() {
+            let style = Style { light: Light::Plain, ..*style };
+            shaders.extend(translucent.iter().map(|layer| Shader {
+                scene: layer.scene,
+                style,
+                color: Some(layer.color),
+                ..shader
+            }));
+        }
+        let offsets = spread(style.samples.max(1));
+        Self { view, style: *style, shaders, offsets, progress }
+    }
+
+    fn bands(&self) -> impl Iterator<Item = Range<u32>> + use<> {
+        bands(self.view.size(), self.shaders.len())
+    }
+
+    /// Paints some rows into their bytes.
+    fn paint(&self, rows: &Range<u32>, bytes: &mut [u8]) {
+        let [width, height] = self.view.size();
+        let mut light = vec![Vec3::ZERO; width as usize * rows.len()];
+        let traced = self.style.traced(rows, height);
+        for (&offset, sample) in self.offsets.iter().zip(0..) {
+            let trace = |shader: &Shader<'a>| {
+                let rows = traced.clone();
+                trace_rows(shader.scene, &self.view, rows, offset, self.progress)
+            };
+            let frames: Vec<Frame> = self.shaders.iter().map(trace).collect();
+            add(&self.shaders, &frames, rows.clone(), sample, &mut light);
+        }
+        write(&light, 1.0 / self.offsets.len() as f32, bytes);
+    }
+}
+
 /// The least and the greatest depth seen through pixel centres.
 fn survey(scene: &Scene, view: &View, progress: Progress<'_>) -> Option<[f64; 2]> {
-    bands(view.size())
+    bands(view.size(), 1)
         .filter_map(|rows| trace_rows(scene, view, rows, [0.5, 0.5], progress).depths())
         .reduce(|[near, far], [n, f]| [near.min(n), far.max(f)])
 }
 
-/// Ranges of rows, whole tiles high, that make up a picture.
-pub(super) fn bands(size: [u32; 2]) -> impl Iterator<Item = Range<u32>> {
-    let [width, height] = size;
-    let tiles = (BAND_PIXELS / TILE / width.max(1)).max(1);
+/// Ranges of rows, whole tiles high, that make up a picture of so many layers.
+pub(super) fn bands(
+    [width, height]: [u32; 2],
+    layers: usize,
+) -> impl Iterator<Item = Range<u32>> {
+    let layers = u32::try_from(layers.max(1)).unwrap_or(u32::MAX);
+    let tiles = (BAND_PIXELS / TILE / width.max(1) / layers).max(1);
     let step = tiles * TILE;
     (0..height.div_ceil(step))
         .map(move |i| i * step..height.min((i + 1).saturating_mul(step)))
@@ -198,7 +265,7 @@ mod tests {
     fn bands_cover_each_row_once() {
         for size in [[0, 0], [0, 5], [5, 0], [64, 48], [16384, 16384], [u32::MAX, 70]] {
             let mut next = 0;
-            for rows in bands(size) {
+            for rows in bands(size, 1) {
                 assert!(rows.start == next && rows.end > next);
                 next = rows.end;
             }

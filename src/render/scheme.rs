@@ -88,6 +88,15 @@ pub(super) fn srgb8(light: Vec3) -> [u8; 3] {
     code.to_array().map(|value| value.round() as u8)
 }
 
+/// What is seen through something of this opacity, and that itself: the mean of sRGB's values and not
+/// of light, as OpenGL blends for OpenSCAD, and browsers.
+pub(super) fn covered(behind: Vec3, before: Vec3, opacity: f32) -> Vec3 {
+    if opacity <= 0.0 {
+        return behind;
+    }
+    behind.map(encoded).lerp(before.map(encoded), opacity).map(decoded)
+}
+
 /// From sRGB to linear light (IEC 61966-2-1:1999, §5.2).
 pub(super) fn decoded(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }

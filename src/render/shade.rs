@@ -7,9 +7,10 @@ use image::RgbImage;
 
 use super::edges::is_edge;
 use super::look::Seen;
-use super::scheme::srgb8;
+use super::scheme::{covered, srgb8};
 use super::sky::openness;
-use super::{Frame, Light, Look, Scheme, chunks};
+use super::{Frame, Light, Look, Scheme, Style, chunks};
+use crate::color::Color;
 use crate::ray::{Crossing, Sense};
 use crate::scene::{Scene, Tracer};
 
@@ -17,17 +18,9 @@ use crate::scene::{Scene, Tracer};
 pub fn shade(scene: &Scene, frame: &Frame, look: Look, scheme: &Scheme) -> RgbImage {
     let [width, height] = frame.size();
     let mut light = vec![Vec3::ZERO; width as usize * height as usize];
-    let depths = frame.depths();
-    let shader = Shader {
-        scene,
-        look,
-        scheme,
-        depths,
-        edges: false,
-        light: Light::Plain,
-        hatch: false,
-    };
-    shader.add(frame, frame.rows(), 0, &mut light);
+    let style = Style { look, scheme: *scheme, ..Style::default() };
+    let shader = Shader { scene, style, depths: frame.depths(), color: None };
+    add(&[shader], std::slice::from_ref(frame), frame.rows(), 0, &mut light);
     let mut image = RgbImage::new(width, height);
     write(&light, 1.0, &mut image);
     image
@@ -40,19 +33,15 @@ pub(super) fn write(light: &[Vec3], factor: f32, bytes: &mut [u8]) {
     }
 }
 
-/// How frames become light.
+/// How the frames of a scene become light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shader<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) look: Look,
-    pub(super) scheme: &'a Scheme,
+    pub(super) style: Style,
     /// The depths that are white and dark grey in [`Look::Depth`].
     pub(super) depths: Option<[f64; 2]>,
-    /// Whether lines are drawn where surfaces end or turn.
-    pub(super) edges: bool,
-    pub(super) light: Light,
-    /// Whether faces of half-spaces are hatched.
-    pub(super) hatch: bool,
+    /// What all of it looks like, if that does not depend on its leaves, and how opaque it is.
+    pub(super) color: Option<Color>,
 }
 
 /// Hatching: so many pixels from line to line, along a row; so much of that is line; so much of its
@@ -63,51 +52,87 @@ const ON_HATCH: f32 = 0.45;
 /// How much of its light is left to a pixel on an edge.
 const ON_EDGES: f32 = 0.12;
 
-impl Shader<'_> {
-    /// Adds the light of the pixels in some of a frame's rows, row by row; `sample` is which of a
-    /// pixel's rays they are.
-    pub(super) fn add(
-        &self,
-        frame: &Frame,
-        rows: Range<u32>,
-        sample: u32,
-        light: &mut [Vec3],
-    ) {
-        let width = frame.size()[0] as usize;
-        let above = rows.start - frame.rows().start;
-        chunks::for_each(
-            light,
-            width.max(1),
-            || self.scene.tracer(),
-            |tracer, y, row| {
-                for (x, pixel) in row.iter_mut().enumerate() {
-                    #[expect(clippy::cast_possible_truncation, reason = "sizes are u32")]
-                    let (x, y) = (x as u32, y as u32 + above);
-                    *pixel += self.pixel(frame, [x, y], sample, tracer);
+/// Adds the light of the pixels in some of the rows that frames show, row by row; `sample` is which
+/// of a pixel's rays they are. The first frame is of what hides, the others of what is seen through.
+pub(super) fn add(
+    shaders: &[Shader<'_>],
+    frames: &[Frame],
+    rows: Range<u32>,
+    sample: u32,
+    light: &mut [Vec3],
+) {
+    let ([shader, translucent @ ..], [frame, veils @ ..]) = (shaders, frames) else {
+        return;
+    };
+    let width = frame.size()[0] as usize;
+    let above = rows.start - frame.rows().start;
+    chunks::for_each(
+        light,
+        width.max(1),
+        || (shader.scene.tracer(), Vec::new()),
+        |(tracer, layers), y, row| {
+            for (x, pixel) in row.iter_mut().enumerate() {
+                #[expect(clippy::cast_possible_truncation, reason = "sizes are u32")]
+                let at @ [x, y] = [x as u32, y as u32 + above];
+                let hit = frame.hit(x, y);
+                let behind = match &hit {
+                    Some(hit) => shader.surface(frame, at, hit, sample, tracer),
+                    None => {
+                        shader.style.look.background(&shader.style.scheme, frame.down(y))
+                    }
+                };
+                let depth = hit.map_or(f64::INFINITY, |hit| hit.t);
+                // What is as near as what hides is marked on its surface.
+                layers.clear();
+                for (shader, veil) in translucent.iter().zip(veils) {
+                    let hit = veil.hit(x, y).filter(|hit| hit.t <= depth);
+                    layers.extend(hit.map(|hit| (hit, shader, veil)));
                 }
-            },
-        );
+                layers.sort_by(|(a, ..), (b, ..)| b.t.total_cmp(&a.t));
+                *pixel += layers.iter().fold(behind, |behind, (hit, shader, veil)| {
+                    let light = shader.unshadowed(veil, at, hit);
+                    covered(behind, light, shader.opacity())
+                });
+            }
+        },
+    );
+}
+
+impl Shader<'_> {
+    /// How much of what is behind it it hides: 0–1.
+    fn opacity(&self) -> f32 {
+        self.color.map_or(1.0, |color| color.rgba[3].clamp(0.0, 1.0))
     }
 
-    fn pixel(
+    /// The light of a pixel in which a surface is seen.
+    fn surface(
         &self,
         frame: &Frame,
-        at @ [x, y]: [u32; 2],
+        at: [u32; 2],
+        hit: &Crossing,
         sample: u32,
         tracer: &mut Tracer<'_>,
     ) -> Vec3 {
-        let Some(hit) = frame.hit(x, y) else {
-            return self.look.background(self.scheme, frame.down(y));
-        };
-        let mut seen = self.seen(frame, x, y, &hit);
-        if let (Light::Soft { rays }, true) = (self.light, self.look.is_lit()) {
+        let mut seen = self.seen(frame, at, hit);
+        if let (Light::Soft { rays }, true) = (self.style.light, self.style.look.is_lit())
+        {
             seen.openness = openness(tracer, frame, at, &seen, rays, sample);
         }
-        let mut light = self.look.paint(&seen);
-        if self.hatch && self.look.is_lit() && self.is_hatched(frame, at, &hit) {
+        self.painted(frame, at, hit, &seen)
+    }
+
+    /// The same under [`Light::Plain`].
+    fn unshadowed(&self, frame: &Frame, at: [u32; 2], hit: &Crossing) -> Vec3 {
+        self.painted(frame, at, hit, &self.seen(frame, at, hit))
+    }
+
+    fn painted(&self, frame: &Frame, at: [u32; 2], hit: &Crossing, seen: &Seen) -> Vec3 {
+        let Style { look, hatch, edges, .. } = self.style;
+        let mut light = look.paint(seen);
+        if hatch && look.is_lit() && self.is_hatched(frame, at, hit) {
             light *= ON_HATCH;
         }
-        if self.edges && is_edge(self.scene, frame, at) {
+        if edges && is_edge(self.scene, frame, at) {
             light *= ON_EDGES;
         }
         light
@@ -121,7 +146,7 @@ impl Shader<'_> {
         is_line && self.scene.leaf(hit.leaf).kind == "half-space"
     }
 
-    fn seen(&self, frame: &Frame, x: u32, y: u32, hit: &Crossing) -> Seen {
+    fn seen(&self, frame: &Frame, [x, y]: [u32; 2], hit: &Crossing) -> Seen {
         let ray = frame.ray(x, y);
         let [right, up, forward] = frame.view().axes();
         let in_eye_coordinates =
@@ -132,9 +157,10 @@ impl Shader<'_> {
             Sense::Exit => -normal,
         };
         let leaf = self.scene.leaf(hit.leaf);
-        let default = if leaf.subtracted { self.scheme.cut } else { self.scheme.face };
+        let Scheme { cut, face, .. } = self.style.scheme;
+        let default = if leaf.subtracted { cut } else { face };
         Seen {
-            color: leaf.part.color.unwrap_or(default),
+            color: self.color.or(leaf.part.color).unwrap_or(default),
             leaf: hit.leaf,
             nearness: self.nearness(hit.t),
             normal,

@@ -1,29 +1,38 @@
 //! `solidray render`
 
 mod cut;
+mod draw;
+mod encode;
+mod layers;
+mod numbers;
 mod scale;
 mod target;
 mod view;
 
 use std::io::Write;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::bail;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use solidray::render::{self, Camera, Light, Look, Scheme, Style, distinct_color};
-use solidray::{Op, Scene, Solid};
+use solidray::render::{
+    Camera, Light, Look, Scheme, Shown, Style, Translucent, distinct_color,
+};
+use solidray::{Aabb, Color, Op, Scene, Solid};
 
-use super::input::{Loaded, Reading};
+use super::input::{Reading, warn_if_empty};
 use super::meter::Meter;
 use super::output;
 use super::pieces::{By, hex, pieces};
 use super::watch::watch;
 use super::{Answer, Global};
 use cut::Cut;
-use target::{Content, Target};
+use draw::{Drawing, Format, Kind};
+use layers::{Layers, MOST};
+use numbers::joined;
+use target::Target;
 use view::ViewArgs;
 
 pub(super) use view::{camera, projection};
@@ -58,12 +67,19 @@ pub(super) struct Render {
     /// How many rays soft light takes for each ray from the eye
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Looks")]
     light_rays: u32,
+    /// How many bits a pixel of depths or thicknesses has in a .png: 16 are grey, and their comment says
+    /// what they mean
+    #[arg(long, value_enum, default_value_t = BitsArg::Eight, help_heading = "Looks")]
+    bits: BitsArg,
     /// Draw dark lines along outlines, steps and creases
     #[arg(long, help_heading = "Looks")]
     edges: bool,
     /// The colours of what has none, as OpenSCAD's schemes have them
     #[arg(long, value_name = "SCHEME", value_parser = PossibleValuesParser::new(Scheme::ALL.map(|(name, _)| name)), ignore_case = true, default_value = Scheme::ALL[0].0, help_heading = "Looks")]
     colorscheme: String,
+    /// Show only the model, not what % and # mark
+    #[arg(long, help_heading = "Looks")]
+    unmarked: bool,
     /// Draw again whenever the file changes, or a model or drawing in its folder, until Ctrl-C
     #[arg(long)]
     watch: bool,
@@ -93,6 +109,14 @@ enum LightArg {
     Plain,
     /// a lamp as wide as the sky: corners and holes are darker, and it takes longer
     Soft,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+enum BitsArg {
+    #[value(name = "8")]
+    Eight,
+    #[value(name = "16")]
+    Sixteen,
 }
 
 #[derive(Serialize)]
@@ -128,13 +152,6 @@ struct Seconds {
     write: f64,
 }
 
-/// What pictures of numbers show.
-#[derive(Clone, Copy, Debug)]
-enum Numbers {
-    Depths,
-    Thicknesses,
-}
-
 impl Render {
     pub(super) fn run(
         &self,
@@ -145,8 +162,17 @@ impl Render {
         if target.is_standard_output() && global.json {
             bail!("standard output cannot take both the picture and --json");
         }
-        if target.takes_numbers() && self.numbers(&target).is_none() {
+        let is_of_numbers = matches!(self.look, LookArg::Depth | LookArg::Thickness);
+        if target.takes_numbers() && !is_of_numbers {
             bail!("only --look depth and --look thickness are written as .tiff");
+        }
+        if self.bits == BitsArg::Sixteen {
+            if !is_of_numbers {
+                bail!("only --look depth and --look thickness have 16 bits");
+            }
+            if target.takes_numbers() {
+                bail!("numbers in a .tiff have 32 bits: --bits 16 is for a .png");
+            }
         }
         if !self.watch {
             return self.drawn(&target, global, out);
@@ -171,38 +197,68 @@ impl Render {
         global: Global,
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
-        let mut objects = Vec::new();
-        let change = |solid: Solid| match self.look == LookArg::Object {
-            true => colored(&solid, &mut objects),
-            false => solid,
-        };
-        let (loaded, solid) = self.reading.load_changed(&self.file, global, change)?;
-        let Loaded { scene: whole, read_seconds, compile_seconds } = loaded;
-        let camera = self.view.camera(&whole.bounds());
         let start = Instant::now();
-        let scene = match self.is_cut() {
-            true => self.opened(&solid, &whole, &camera)?,
-            false => whole,
+        let with_marks = self.look == LookArg::Shaded && !self.unmarked;
+        let model = match with_marks {
+            true => self.reading.read_marked(&self.file, global)?,
+            false => self.reading.read(&self.file, global)?,
         };
-        drop(solid);
-        let compile = compile_seconds + start.elapsed().as_secs_f64();
+        let read = start.elapsed().as_secs_f64();
+
+        let start = Instant::now();
+        let mut objects = Vec::new();
+        let layers = match self.look {
+            LookArg::Object => Layers::opaque(colored(&model.solid, &mut objects)),
+            LookArg::Shaded => Layers::new(model.solid, model.marks),
+            _ => Layers::opaque(model.solid),
+        };
+        if layers.too_many > 0 && !global.quiet {
+            super::report::note(&format!(
+                "warning: {}: {MOST} colours are seen through, {} more are drawn as if they were opaque",
+                self.file.display(),
+                layers.too_many
+            ));
+        }
+        let mut scenes = Scenes::compile(&layers, |solid| self.compile(solid))?;
+        warn_if_empty(&self.file, &scenes.opaque, global);
+        let camera = self.view.camera(&scenes.bounds());
+        if self.is_cut() {
+            let view = camera.view(self.view.imgsize, &scenes.bounds());
+            let [_, _, forward] = view.axes();
+            let cut = |solid: Solid| {
+                self.cut.iter().fold(solid, |solid, cut| cut.applied(&solid, forward))
+            };
+            scenes = Scenes::compile(&layers.changed(cut), |solid| self.compile(solid))?;
+        }
+        let compile = start.elapsed().as_secs_f64();
 
         let (mut trace, mut write, mut range) = (0.0, 0.0, None);
         let pictures = self.view.turntable.unwrap_or(1);
-        let rays = self.rays(target).saturating_mul(pictures.into());
+        let translucent = scenes.translucent();
+        let shown = Shown { solid: &scenes.opaque, translucent: &translucent };
+        let rays = self.rays(target, translucent.len()).saturating_mul(pictures.into());
         let meter = Meter::new(global, "tracing", Some(rays));
         for index in 0..pictures {
             let start = Instant::now();
-            let camera = turned(camera, index, pictures);
-            let content = self.draw(&scene, &camera, target, &meter, &mut range)?;
-            trace += start.elapsed().as_secs_f64();
-            let start = Instant::now();
-            target.write(index, content, out)?;
-            write += start.elapsed().as_secs_f64();
+            let mut picture = Drawing {
+                style: self.style(),
+                size: self.view.imgsize,
+                camera: turned(camera, index, pictures),
+                numbers: self.numbers(target),
+                format: self.format(target),
+                folder: target.folder(),
+                traced: Duration::ZERO,
+                range: None,
+            };
+            target.write(index, |file| picture.draw(shown, &meter, file), out)?;
+            range = picture.range.into_iter().chain(range).reduce(joined);
+            let seconds = picture.traced.as_secs_f64();
+            trace += seconds;
+            write += start.elapsed().as_secs_f64() - seconds;
         }
         drop(meter);
 
-        let seconds = Seconds { read: read_seconds, compile, trace, write };
+        let seconds = Seconds { read, compile, trace, write };
         if global.json {
             let [width, height] = self.view.imgsize;
             let report = Report {
@@ -236,17 +292,8 @@ impl Render {
         !self.cut.is_empty()
     }
 
-    /// The scene of the model cut open.
-    fn opened(
-        &self,
-        solid: &Solid,
-        whole: &Scene,
-        camera: &Camera,
-    ) -> anyhow::Result<Scene> {
-        let [_, _, forward] = camera.view(self.view.imgsize, &whole.bounds()).axes();
-        let cuts = self.cut.iter();
-        let open = cuts.fold(solid.clone(), |solid, cut| cut.applied(&solid, forward));
-        Ok(self.reading.compile(&self.file, &open)?)
+    fn compile(&self, solid: &Solid) -> anyhow::Result<Scene> {
+        Ok(self.reading.compile(&self.file, solid)?)
     }
 
     fn style(&self) -> Style {
@@ -269,10 +316,11 @@ impl Render {
     }
 
     /// The numbers that are found before any colour, if there are any.
-    fn numbers(&self, target: &Target) -> Option<Numbers> {
+    fn numbers(&self, target: &Target) -> Option<Kind> {
+        let are_wanted = target.takes_numbers() || self.bits == BitsArg::Sixteen;
         match self.look {
-            LookArg::Thickness => Some(Numbers::Thicknesses),
-            LookArg::Depth if target.takes_numbers() => Some(Numbers::Depths),
+            LookArg::Thickness => Some(Kind::Thickness),
+            LookArg::Depth if are_wanted => Some(Kind::Depth),
             LookArg::Shaded
             | LookArg::Normal
             | LookArg::Depth
@@ -281,49 +329,53 @@ impl Render {
         }
     }
 
-    /// How many rays from the eye one picture takes.
-    fn rays(&self, target: &Target) -> u64 {
-        let [width, height] = self.view.imgsize.map(u64::from);
-        match self.numbers(target) {
-            Some(Numbers::Thicknesses) => width * height * u64::from(self.samples),
-            Some(Numbers::Depths) => width * height,
-            None => self.style().rays(self.view.imgsize),
+    fn format(&self, target: &Target) -> Format {
+        match self.bits {
+            _ if target.takes_numbers() => Format::Tiff,
+            BitsArg::Eight => Format::Png,
+            BitsArg::Sixteen => Format::Png16,
         }
     }
 
-    /// One picture, or its numbers, whose range is joined to that of those before.
-    fn draw(
-        &self,
-        scene: &Scene,
-        camera: &Camera,
-        target: &Target,
-        meter: &Meter,
-        range: &mut Option<[f32; 2]>,
-    ) -> anyhow::Result<Content> {
-        let size = self.view.imgsize;
-        let progress = |n| meter.tick(n);
-        let numbers = match self.numbers(target) {
-            Some(Numbers::Thicknesses) => {
-                render::thickness(scene, camera, size, self.samples, &progress)
-            }
-            Some(Numbers::Depths) => render::depth(scene, camera, size, &progress),
-            None => {
-                let style = self.style();
-                let picture = render::picture(scene, camera, size, &style, &progress);
-                return Ok(Content::Picture(picture));
-            }
-        };
-        let extremes = |[a, b]: [f32; 2], [c, d]: [f32; 2]| [a.min(c), b.max(d)];
-        let seen = numbers.iter().filter(|n| n.is_finite()).map(|&n| [n, n]);
-        let seen = seen.reduce(extremes);
-        *range = seen.into_iter().chain(*range).reduce(extremes);
-        if target.takes_numbers() {
-            return Ok(Content::Numbers { size, numbers });
+    /// How many rays from the eye one picture takes.
+    fn rays(&self, target: &Target, translucent: usize) -> u64 {
+        let [width, height] = self.view.imgsize.map(u64::from);
+        match self.numbers(target) {
+            Some(Kind::Thickness) => width * height * u64::from(self.samples),
+            Some(Kind::Depth) => width * height,
+            None => self.style().rays(self.view.imgsize, translucent),
         }
-        let [_, most] = seen.unwrap_or_default();
-        let mut image = render::heat(&numbers, size, most);
-        scale::draw_scale(&mut image, most)?;
-        Ok(Content::Picture(image))
+    }
+}
+
+/// The scenes of the layers of a model.
+struct Scenes {
+    opaque: Scene,
+    translucent: Vec<(Scene, Color)>,
+}
+
+impl Scenes {
+    fn compile(
+        layers: &Layers,
+        compile: impl Fn(&Solid) -> anyhow::Result<Scene>,
+    ) -> anyhow::Result<Self> {
+        let each = layers.translucent.iter();
+        let translucent = each.map(|(solid, color)| Ok((compile(solid)?, *color)));
+        Ok(Self {
+            opaque: compile(&layers.opaque)?,
+            translucent: translucent.collect::<anyhow::Result<_>>()?,
+        })
+    }
+
+    fn translucent(&self) -> Vec<Translucent<'_>> {
+        let each = self.translucent.iter();
+        each.map(|(scene, color)| Translucent { scene, color: *color }).collect()
+    }
+
+    /// The bounds of all of them.
+    fn bounds(&self) -> Aabb {
+        let translucent = &self.translucent();
+        Shown { solid: &self.opaque, translucent }.bounds()
     }
 }
 

@@ -9,18 +9,27 @@ use solidray::render::heat_color;
 const FONT: &str = "sans-serif";
 /// What the scale takes: less room has none.
 const ROOM: [u32; 2] = [220, 160];
+/// How wide it is, in heights of its letters.
+const LETTERS: u32 = 10;
 
-/// Draws a bar with the colours from nothing to `most` at the right edge of a picture, and numbers
-/// beside it; nothing in a small picture.
+/// How wide a strip at the right edge of a picture its scale takes; none in a small picture.
+pub(super) fn width([width, height]: [u32; 2]) -> Option<u32> {
+    let has_room = width >= ROOM[0] && height >= ROOM[1];
+    has_room.then(|| (LETTERS * letter(height)).min(width))
+}
+
+/// The height of the letters in a picture.
+fn letter(height: u32) -> u32 {
+    (height / 40).clamp(11, 40)
+}
+
+/// Draws a bar with the colours from nothing to `most` at the right edge of a picture, or of a strip
+/// of it that is wide enough, and numbers beside it.
 pub(super) fn draw_scale(image: &mut RgbImage, most: f32) -> anyhow::Result<()> {
     let (width, height) = image.dimensions();
-    if width < ROOM[0] || height < ROOM[1] {
-        return Ok(());
-    }
     register_font(FONT, FontStyle::Normal, dejavu::sans::regular())
         .map_err(|_| anyhow!("the font of the scale cannot be read"))?;
-    let size = (height / 40).clamp(11, 40);
-    let [w, h, em] = [width, height, size].map(i32::try_from);
+    let [w, h, em] = [width, height, letter(height)].map(i32::try_from);
     let (w, h, em) = (w?, h?, em?);
     let (top, bottom) = (h / 10, h - h / 10);
     let (left, right) = (w - 2 * em, w - em);

@@ -1,13 +1,13 @@
 //! Where pictures go.
 
-use std::io::{Cursor, Write};
+use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
-use image::{ImageFormat, RgbImage};
-use tiff::encoder::{TiffEncoder, colortype::Gray32Float};
+use anyhow::bail;
+use tempfile::{SpooledTempFile, spooled_tempfile_in};
 
 use super::super::output;
+use super::numbers::IN_MEMORY;
 
 /// The file or the files that are written.
 pub(super) struct Target {
@@ -19,20 +19,10 @@ pub(super) struct Target {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
-    /// Colours in 8 bits.
+    /// Colours in 8 bits, or grey in 16.
     Png,
     /// Numbers in 32 bits.
     Tiff,
-}
-
-/// What is written.
-pub(super) enum Content {
-    Picture(RgbImage),
-    /// Row by row from the upper left.
-    Numbers {
-        size: [u32; 2],
-        numbers: Vec<f32>,
-    },
 }
 
 impl Target {
@@ -77,28 +67,29 @@ impl Target {
         self.path.with_file_name(format!("{stem}-{index:0digits$}.{extension}"))
     }
 
+    /// Where there is room for what is being made: the folder of the pictures.
+    pub(super) fn folder(&self) -> PathBuf {
+        match self.path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+            _ if self.is_standard_output() => std::env::temp_dir(),
+            _ => PathBuf::from("."),
+        }
+    }
+
     /// Writes one of the pictures, whole or not at all.
     pub(super) fn write(
         &self,
         index: u32,
-        content: Content,
+        make: impl FnOnce(&mut SpooledTempFile) -> anyhow::Result<()>,
         out: &mut dyn Write,
     ) -> anyhow::Result<()> {
-        let mut bytes = Cursor::new(Vec::new());
-        match content {
-            Content::Picture(picture) => {
-                picture.write_to(&mut bytes, ImageFormat::Png).context("the picture")?;
-            }
-            Content::Numbers { size: [width, height], numbers } => {
-                let mut tiff = TiffEncoder::new(&mut bytes).context("the picture")?;
-                tiff.write_image::<Gray32Float>(width, height, &numbers)
-                    .context("the picture")?;
-            }
-        }
+        let mut file = spooled_tempfile_in(IN_MEMORY, self.folder());
+        make(&mut file)?;
+        file.rewind()?;
         if self.is_standard_output() {
-            Ok(out.write_all(bytes.get_ref())?)
-        } else {
-            output::save(&self.name(index), bytes.get_ref())
+            std::io::copy(&mut file, out)?;
+            return Ok(());
         }
+        output::save_from(&self.name(index), &mut file)
     }
 }

@@ -41,7 +41,7 @@ pub(super) fn shapes(
             Ok(true) => {}
             Ok(false) => return Ok((walk.outermost, walk.marked)),
             Err(error) => match reading.aside.take() {
-                Some(aside) => walk.leave_aside(aside, error, reading),
+                Some(aside) => walk.leave_aside(aside, &error, reading),
                 None => return Err(error),
             },
         }
@@ -162,7 +162,7 @@ impl Walk<'_> {
     }
 
     /// Goes on behind a statement after `%` that cannot be made.
-    fn leave_aside(&mut self, aside: Aside, error: Located, reading: &mut Reading<'_>) {
+    fn leave_aside(&mut self, aside: Aside, error: &Located, reading: &mut Reading<'_>) {
         self.open.retain(|frame| frame.statement < aside.statement);
         let statement = &self.document.statements[aside.statement];
         self.next = statement.end as usize;
