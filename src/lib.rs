@@ -1,7 +1,7 @@
 //! Constructive solid geometry by rays.
 //!
 //! A solid is a tree of quadrics, boxes and closed meshes under affine maps, combined by
-//! union, intersection and difference. Nothing is ever meshed: the only geometric operation
+//! union, intersection and difference. It is not meshed to be asked: the only geometric operation
 //! is a ray, whose answer is the exact list of stretches inside the solid. Pictures,
 //! volumes and membership are built on that.
 //!

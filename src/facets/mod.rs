@@ -1,6 +1,7 @@
 //! Facets, for those who need some: curves as polyhedra, and a solid's surface as one mesh.
 //!
-//! Nothing else in this crate is made of facets. Here [`faceted`] replaces balls, cylinders
+//! No query needs them: solids are asked as they are, and what readers make of facets, where a curve
+//! has no exact solid, they say. Here [`faceted`] replaces balls, cylinders
 //! and cones by the polyhedra that OpenSCAD makes of them, and [`boundary`] finds the
 //! surface of what is then made of meshes alone, by the Manifold library
 //! (<https://github.com/elalish/manifold>).
