@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::path::Path;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use solidray::Aabb;
@@ -124,6 +124,29 @@ pub(super) fn bounds_json(bounds: &Aabb) -> Option<BoundsJson> {
 /// A point as `x,y,z`, which the program reads back.
 pub(super) fn point(p: DVec3) -> String {
     format!("{},{},{}", p.x, p.y, p.z)
+}
+
+/// Refuses the name of a file to write before the work.
+pub(super) fn check_name(
+    path: Option<&Path>,
+    ending: &str,
+    why: &str,
+) -> anyhow::Result<()> {
+    let Some(path) = path else { return Ok(()) };
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    if extension.as_deref() != Some(ending) {
+        bail!("{}: {why}", path.display());
+    }
+    check_folder(path)
+}
+
+/// Refuses a file whose folder does not exist.
+pub(super) fn check_folder(path: &Path) -> anyhow::Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        bail!("{}: there is no folder {}", path.display(), folder.display());
+    }
+    Ok(())
 }
 
 /// Writes a file beside its place and moves it there when it is complete. What was there

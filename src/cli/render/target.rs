@@ -39,10 +39,7 @@ impl Target {
                 path.display()
             ),
         };
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-            bail!("{}: there is no folder {}", path.display(), folder.display());
-        }
+        output::check_folder(path)?;
         if is_standard_output && count.is_some() {
             bail!("standard output takes one picture, not those of a turntable");
         }

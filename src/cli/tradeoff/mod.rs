@@ -14,7 +14,7 @@ mod table;
 mod volumes;
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
@@ -97,8 +97,8 @@ impl Tradeoff {
         global: Global,
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
-        check_name(self.output.as_deref(), "png", "plots are written as .png")?;
-        check_name(self.csv.as_deref(), "csv", "tables are written as .csv")?;
+        output::check_name(self.output.as_deref(), "png", "plots are written as .png")?;
+        output::check_name(self.csv.as_deref(), "csv", "tables are written as .csv")?;
         let start = Instant::now();
         let (loaded, solid) = self.reading.load_and_keep(&self.file, global)?;
         if loaded.scene.bounds().is_empty() {
@@ -167,20 +167,6 @@ impl Study<'_> {
         Duration::try_from_secs_f64(self.seconds.as_secs_f64() * part)
             .unwrap_or(Duration::MAX)
     }
-}
-
-/// Refuses a file's name before the work.
-fn check_name(path: Option<&Path>, ending: &str, why: &str) -> anyhow::Result<()> {
-    let Some(path) = path else { return Ok(()) };
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    if extension.as_deref() != Some(ending) {
-        bail!("{}: {why}", path.display());
-    }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-        bail!("{}: there is no folder {}", path.display(), folder.display());
-    }
-    Ok(())
 }
 
 /// Runs something on one thread, whose time is then what it costs.
