@@ -23,6 +23,7 @@ mod ray;
 mod render;
 mod report;
 mod sampling;
+mod ticks;
 mod tradeoff;
 mod volume;
 mod watch;
