@@ -221,7 +221,7 @@ impl Render {
         }
         let mut scenes = Scenes::compile(&layers, |solid| self.compile(solid))?;
         warn_if_empty(&self.file, &scenes.opaque, global);
-        let camera = self.view.camera(&scenes.bounds());
+        let camera = self.view.camera.camera(&scenes.bounds());
         if self.is_cut() {
             let view = camera.view(self.view.imgsize, &scenes.bounds());
             let [_, _, forward] = view.axes();

@@ -12,6 +12,16 @@ pub(super) struct ViewArgs {
     /// Width and height in pixels
     #[arg(long, value_name = "W,H", default_value = "1024,768", value_parser = size, help_heading = "View")]
     pub(super) imgsize: [u32; 2],
+    #[command(flatten)]
+    pub(super) camera: CameraArgs,
+    /// Draw so many pictures while the model turns once: OUT-000.png, OUT-001.png and so on
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "View")]
+    pub(super) turntable: Option<u32>,
+}
+
+/// Options of the camera.
+#[derive(Args, Debug)]
+pub(in super::super) struct CameraArgs {
     /// Where to look from: x,y,z, turned by rx,ry,rz degrees, from distance d; or from the
     /// eye ex,ey,ez to the centre cx,cy,cz
     #[arg(long, value_name = "NUMBERS", value_parser = camera, help_heading = "View")]
@@ -25,17 +35,14 @@ pub(super) struct ViewArgs {
     /// Look at the centre of the model [default without --camera]
     #[arg(long, help_heading = "View")]
     autocenter: bool,
-    /// Draw so many pictures while the model turns once: OUT-000.png, OUT-001.png and so on
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "View")]
-    pub(super) turntable: Option<u32>,
 }
 
 /// The largest picture, in pixels.
 const MOST_PIXELS: u64 = 1 << 28;
 
-impl ViewArgs {
+impl CameraArgs {
     /// The camera that was asked for, or one that shows everything.
-    pub(super) fn camera(&self, bounds: &Aabb) -> Camera {
+    pub(in super::super) fn camera(&self, bounds: &Aabb) -> Camera {
         let camera = match self.camera {
             None => Camera::framing(bounds),
             Some(camera) => {
