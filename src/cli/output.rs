@@ -56,30 +56,56 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
             if low > 0.0 { format!("at least {low:.3e}, ") } else { String::new() };
         return format!("not resolved: {least}at most {high:.3e} (95 %)");
     }
-    let half_width = estimate.half_width();
-    let kind = match estimate.method {
-        _ if half_width == 0.0 => "",
-        Method::Lattice | Method::Points => " (95 %)",
-        Method::Bracket => " (certain)",
-        Method::Exact => " (rounding)",
-        Method::Adaptive | _ => " (estimated)",
-    };
-    format!("{}{kind}", number(estimate.value, half_width))
+    let number = number(estimate.value, estimate.half_width());
+    match confidence(estimate) {
+        Some(kind) => format!("{number} ({kind})"),
+        None => number,
+    }
+}
+
+/// How sure the interval of an estimate is, or what kind of interval it is; none of one without
+/// width.
+pub(super) fn confidence(estimate: &Estimate) -> Option<&'static str> {
+    match estimate.method {
+        _ if estimate.half_width() == 0.0 => None,
+        Method::Lattice | Method::Points => Some("95 %"),
+        Method::Bracket => Some("certain"),
+        Method::Exact => Some("rounding"),
+        Method::Adaptive | _ => Some("estimated"),
+    }
 }
 
 /// Digits that were earned, then the half width of the interval, if it has any.
 pub(super) fn number(value: f64, half_width: f64) -> String {
+    let value = earned(value, half_width);
     if half_width == 0.0 {
-        return format!("{value}");
+        value
+    } else if takes_powers(half_width) {
+        format!("{value} ± {half_width:.1e}")
+    } else {
+        let decimals = decimals(half_width);
+        format!("{value} ± {half_width:.decimals$}")
     }
-    let decimals = decimals(half_width);
-    // From 100 on an error bar has more digits in front of the point than it is worth.
-    if decimals > 12 || half_width >= 99.5 {
+}
+
+/// The digits of a number that an interval of this half width has earned.
+pub(super) fn earned(value: f64, half_width: f64) -> String {
+    if half_width == 0.0 {
+        format!("{value}")
+    } else if takes_powers(half_width) {
         let digits = (value.abs() / half_width).max(1.0).log10().floor() + 1.0;
         let digits = decimals_of(digits);
-        return format!("{value:.digits$e} ± {half_width:.1e}");
+        format!("{value:.digits$e}")
+    } else {
+        let decimals = decimals(half_width);
+        format!("{value:.decimals$}")
     }
-    format!("{value:.decimals$} ± {half_width:.decimals$}")
+}
+
+/// Whether numbers with such an error bar are written with a power of ten: from 100 on the bar has
+/// more digits in front of the point than it is worth.
+fn takes_powers(half_width: f64) -> bool {
+    decimals(half_width) > 12 || half_width >= 99.5
 }
 
 /// How many spans there were and how many of them rounding decided.
