@@ -76,6 +76,20 @@ impl View {
         self.fan.ray(right, up)
     }
 
+    /// Where in the picture a point appears, in the pixels of [`View::ray`]; perhaps beyond its
+    /// edges. None for a point that no ray leads to: at or behind the eye of a perspective view.
+    pub fn place(&self, point: DVec3) -> Option<[f64; 2]> {
+        let [right, up, forward] = self.axes;
+        let Fan { origin, dir } = self.fan;
+        let seen = point - origin.middle;
+        let depth = seen.dot(forward);
+        let pixel = (origin.right + depth * dir.right).dot(right);
+        let [width, height] = self.size.map(f64::from);
+        let place =
+            [0.5 * width + seen.dot(right) / pixel, 0.5 * height - seen.dot(up) / pixel];
+        (pixel > 0.0 && place.iter().all(|x| x.is_finite())).then_some(place)
+    }
+
     /// How wide a pixel is at a depth.
     #[cfg(feature = "image")]
     pub(super) fn footprint(&self, t: f64) -> f64 {
@@ -241,12 +255,34 @@ mod tests {
             let camera = gimbal([1.0, 2.0, 3.0, 70.0, 30.0, -40.0, 60.0])
                 .with_projection(projection);
             let [x, y] = project(&camera, [400, 300], p);
-            let ray = camera.view([400, 300], &bounds).ray(x, y);
+            let view = camera.view([400, 300], &bounds);
+            let ray = view.ray(x, y);
             let forward = camera.axes()[2];
             assert!((ray.dir.dot(forward) - 1.0).abs() < 1e-15);
             let t = (p - ray.origin).dot(forward);
             assert!(ray.at(t).distance(p) < 1e-12);
+            let place = view.place(p).expect("it is in front of the eye");
+            assert!(
+                (place[0] - x).hypot(place[1] - y) < 1e-10,
+                "{place:?}, not {x}, {y}"
+            );
         }
+    }
+
+    #[test]
+    fn points_behind_the_eye_have_no_place() {
+        let camera = gimbal([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 50.0]);
+        let view = camera.view([400, 300], &Aabb::ALL);
+        assert_eq!(view.place(DVec3::ZERO), Some([200.0, 150.0]));
+        assert_eq!(view.place(DVec3::new(0.0, 0.0, 50.0)), None);
+        assert_eq!(view.place(DVec3::new(1.0, 2.0, 60.0)), None);
+        assert_eq!(view.place(DVec3::NAN), None);
+        let blind = gimbal([0.0; 7]).with_projection(Projection::Orthographic);
+        assert_eq!(blind.view([400, 300], &Aabb::ALL).place(DVec3::ONE), None);
+        let parallel = camera.with_projection(Projection::Orthographic);
+        let place =
+            parallel.view([400, 300], &Aabb::ALL).place(DVec3::new(0.0, 0.0, 60.0));
+        assert_eq!(place, Some([200.0, 150.0]));
     }
 
     #[test]
