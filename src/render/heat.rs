@@ -18,6 +18,15 @@ fn light(fraction: f32) -> Vec3 {
     oklch(0.95 - 0.70 * f, 0.16 * (f * (1.0 - f) * 4.0).sqrt().max(0.25), hue_turns)
 }
 
+/// The sRGB colour of a fraction between 0 and 1 in one hue, an angle of the Oklab space in degrees
+/// (29 is red, 255 blue): from white to dark, in even steps of lightness.
+pub fn tint(hue_deg: f32, fraction: f32) -> [u8; 3] {
+    let f = fraction.clamp(0.0, 1.0);
+    // White has no chroma and the dark end room for little.
+    let chroma = 0.19 * (0.8 * std::f32::consts::PI * f).sin();
+    srgb8(oklch(1.0 - 0.62 * f, chroma, hue_deg / 360.0))
+}
+
 /// A picture of numbers, row by row from the upper left, the largest being `most`; white where they
 /// are zero or none.
 ///
@@ -44,6 +53,21 @@ mod tests {
             let [a, b] = [i, i + 1].map(|i| luma(f32::from(i) / 100.0));
             assert!(b < a, "{i}: {a} {b}");
         }
+    }
+
+    #[test]
+    fn tints_begin_at_white_and_darken() {
+        for hue_deg in [29.0, 255.0] {
+            assert_eq!(tint(hue_deg, 0.0), [255; 3]);
+            let sum =
+                |f: f32| tint(hue_deg, f).iter().copied().map(u32::from).sum::<u32>();
+            for i in 0..20_u8 {
+                let [a, b] = [i, i + 1].map(|i| sum(f32::from(i) / 20.0));
+                assert!(b < a, "{hue_deg}, {i}: {a} {b}");
+            }
+        }
+        let ([r, _, b], [s, _, c]) = (tint(29.0, 0.6), tint(255.0, 0.6));
+        assert!(r > b && s < c, "red and blue");
     }
 
     #[test]

@@ -47,7 +47,7 @@ pub use camera::{Camera, CameraError, Projection};
 pub use coverage::coverage;
 pub use frame::{Frame, trace};
 #[cfg(feature = "image")]
-pub use heat::{heat, heat_color};
+pub use heat::{heat, heat_color, tint};
 #[cfg(feature = "image")]
 pub use lengths::{depth, depth_bands, thickness, thickness_bands};
 #[cfg(feature = "image")]
