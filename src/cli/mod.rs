@@ -25,6 +25,7 @@ mod report;
 mod sampling;
 mod ticks;
 mod tradeoff;
+mod typed;
 mod volume;
 mod watch;
 

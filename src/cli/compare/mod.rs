@@ -1,19 +1,39 @@
 //! `solidray compare`
+//!
+//! ```text
+//! Comparison ─► text, JSON
+//!      └──────► pictures, commands ─► page
+//! ```
+
+mod camera;
+mod commands;
+mod figures;
+mod measures;
+mod page;
+mod pictures;
+mod shell;
+mod words;
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
 use solidray::measure::{self, Comparison, Verdict, Worst};
+use solidray::{Aabb, Solid};
 
 use super::input::Reading;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, point};
+use super::render::CameraArgs;
 use super::sampling::{SamplingArgs, positive};
+use super::typed::Typed;
 use super::{Answer, Global};
+use camera::near;
+use page::Page;
+use pictures::{Pictures, Task};
 
 /// Measure how much two solids differ, and where most
 ///
@@ -28,10 +48,16 @@ pub(super) struct Compare {
     /// How much may differ, as a fraction of the larger volume
     #[arg(long, value_name = "T", default_value = "1e-3", value_parser = positive)]
     tol: f64,
+    /// Write a page for eyes to this .html: pictures of both, a map of the difference, the measures, and
+    /// the commands that show them again. The options of the view are those of its pictures
+    #[arg(long, value_name = "OUT")]
+    report: Option<PathBuf>,
     #[command(flatten)]
-    sampling: SamplingArgs,
+    camera: CameraArgs,
     #[command(flatten)]
-    reading: Reading,
+    sampling: Typed<SamplingArgs>,
+    #[command(flatten)]
+    reading: Typed<Reading>,
 }
 
 #[derive(Serialize)]
@@ -66,30 +92,43 @@ impl Compare {
         if self.a.as_os_str() == "-" && self.b.as_os_str() == "-" {
             bail!("only one of the two models can be standard input");
         }
-        let a = self.reading.read(&self.a, global)?.solid;
-        let b = self.reading.read(&self.b, global)?.solid;
-        for (file, solid) in [(&self.a, &a), (&self.b, &b)] {
-            self.reading.compile(file, solid)?;
+        let why = "reports are written as .html";
+        output::check_name(self.report.as_deref(), "html", why)?;
+        if self.report.is_none() && self.camera.is_typed() {
+            bail!("only a --report has pictures that a camera could take");
         }
+        let reading = &self.reading.meant;
+        let a = reading.read(&self.a, global)?.solid;
+        let b = reading.read(&self.b, global)?.solid;
+        let bounds = [
+            reading.compile(&self.a, &a)?.bounds(),
+            reading.compile(&self.b, &b)?.bounds(),
+        ];
         let start = Instant::now();
         let meter = Meter::interruptible(global, "comparing")?;
-        let sampling = self.sampling.meant();
+        let sampling = self.sampling.meant.meant();
         let watch = |rays| meter.step(rays);
         let found = measure::compare_with(
             &a,
             &b,
             self.tol,
             &sampling,
-            &self.reading.compiling(),
+            &reading.compiling(),
             &watch,
         )?;
         drop(meter);
         let seconds = start.elapsed().as_secs_f64();
+        // Who asked for numbers gets them though the page cannot be written.
+        let written = match &self.report {
+            Some(path) => self.write(path, [&a, &b], bounds, &found, seconds, global),
+            None => Ok(()),
+        };
         if global.json {
             output::json(out, self.report(&found, seconds))?;
         } else {
             self.print(out, &found, seconds, global)?;
         }
+        written?;
         match found.verdict {
             Verdict::Same => Ok(Answer::Yes),
             Verdict::Different => Ok(Answer::No),
@@ -101,6 +140,61 @@ impl Compare {
                 )
             }
         }
+    }
+
+    /// Writes the report.
+    fn write(
+        &self,
+        path: &Path,
+        solids: [&Solid; 2],
+        bounds: [Aabb; 2],
+        found: &Comparison,
+        seconds: f64,
+        global: Global,
+    ) -> anyhow::Result<()> {
+        let pictures = self.pictures(solids, bounds, found, global)?;
+        let camera = pictures.as_ref().map(|pictures| &pictures.camera);
+        let commands = self.commands(path, found.worst.as_ref(), camera);
+        let page = Page {
+            files: [&self.a, &self.b],
+            bounds,
+            found,
+            tolerance: self.tol,
+            sampling: &self.sampling.meant.meant(),
+            seconds,
+            pictures: pictures.as_ref(),
+            commands: &commands,
+        };
+        output::save(path, page.html().as_bytes())
+    }
+
+    /// The pictures of a report, if there is anything to see and it has an end.
+    fn pictures(
+        &self,
+        solids: [&Solid; 2],
+        bounds: [Aabb; 2],
+        found: &Comparison,
+        global: Global,
+    ) -> anyhow::Result<Option<Pictures>> {
+        let [a, b] = bounds;
+        let bounds = a.hull(b);
+        if !bounds.is_bounded() {
+            return Ok(None);
+        }
+        let meter = Meter::new(global, "drawing", Some(Task::rays()));
+        let task = Task {
+            solids,
+            options: self.reading.meant.compiling(),
+            bounds,
+            camera: if self.camera.is_typed() {
+                self.camera.camera(&bounds)
+            } else {
+                near(&bounds)
+            },
+            worst: found.worst.as_ref(),
+            tolerance: self.tol,
+        };
+        task.pictures(&meter).map(Some)
     }
 
     fn print(
@@ -152,15 +246,20 @@ impl Compare {
                 to: worst.to.to_array(),
                 only_in: only_in(worst),
             }),
-            verdict: match found.verdict {
-                Verdict::Same => "same",
-                Verdict::Different => "different",
-                Verdict::Undecided => "undecided",
-            },
+            verdict: verdict_name(found.verdict),
             tol: self.tol,
             rays: found.a.rays,
             seconds,
         }
+    }
+}
+
+/// A verdict in JSON.
+fn verdict_name(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Same => "same",
+        Verdict::Different => "different",
+        Verdict::Undecided => "undecided",
     }
 }
 

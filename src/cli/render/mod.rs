@@ -35,7 +35,7 @@ use numbers::joined;
 use target::Target;
 use view::ViewArgs;
 
-pub(super) use view::{camera, projection};
+pub(super) use view::{CameraArgs, camera, projection};
 
 /// Draw a picture
 ///

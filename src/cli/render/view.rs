@@ -53,6 +53,12 @@ impl CameraArgs {
         };
         camera.with_projection(self.projection)
     }
+
+    /// Whether any of them was asked for.
+    pub(in super::super) fn is_typed(&self) -> bool {
+        let is_other = self.projection != Projection::Perspective;
+        self.camera.is_some() || is_other || self.viewall || self.autocenter
+    }
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
