@@ -210,7 +210,9 @@ impl Render {
         let layers = match self.look {
             LookArg::Object => Layers::opaque(colored(&model.solid, &mut objects)),
             LookArg::Shaded => Layers::new(model.solid, model.marks),
-            _ => Layers::opaque(model.solid),
+            LookArg::Normal | LookArg::Depth | LookArg::Leaf | LookArg::Thickness => {
+                Layers::opaque(model.solid)
+            }
         };
         if layers.too_many > 0 && !global.quiet {
             super::report::note(&format!(
