@@ -162,3 +162,41 @@ fn a_grid_without_end_stops_with_its_reader() {
     assert!(done.stdout.starts_with(b"ray,t_in"));
     assert_eq!(String::from_utf8_lossy(&done.stderr), "0\n");
 }
+
+/// Who asks one by one, as people and programs at the other end of two pipes do, is answered.
+#[test]
+fn questions_are_answered_as_they_come() {
+    use std::io::{BufRead, BufReader, Write};
+    use std::process::{Command, Stdio};
+    use std::sync::mpsc;
+
+    let desk = Desk::new();
+    for (command, rest) in [("ray", "-50 0 0 1"), ("contains", "5")] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_solidray"))
+            .args([command, "tube.csg"])
+            .current_dir(desk.path(""))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        let mut input = child.stdin.take().expect("it is piped");
+        let output = BufReader::new(child.stdout.take().expect("it is piped"));
+        let (send, receive) = mpsc::channel();
+        let reader = std::thread::spawn(move || {
+            for line in output.lines() {
+                let _ = send.send(line.expect("text"));
+            }
+        });
+        for y in 0..3 {
+            // The next line has only begun.
+            input.write_all(format!("4 {y} {rest}\n3").as_bytes()).expect("it reads");
+            let limit = std::time::Duration::from_secs(60);
+            let is_answer = |line: &String| line.contains(&format!("4,{y},"));
+            while !is_answer(&receive.recv_timeout(limit).expect("an answer")) {}
+            input.write_all(format!(" 0 {rest}\n").as_bytes()).expect("it reads");
+        }
+        drop(input);
+        assert!(child.wait().expect("it ends").success());
+        reader.join().expect("it ends");
+    }
+}

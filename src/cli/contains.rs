@@ -52,7 +52,8 @@ impl Contains {
         if global.json {
             write!(out, "{{\"schema\":{SCHEMA},\"points\":[")?;
         }
-        let each = |numbers: [f64; 3]| -> anyhow::Result<()> {
+        let each = |numbers: Option<[f64; 3]>| -> anyhow::Result<()> {
+            let Some(numbers) = numbers else { return Ok(out.flush()?) };
             let p = DVec3::from_array(numbers);
             let found = tracer.classify(p);
             if found == Membership::Out {
@@ -74,7 +75,7 @@ impl Contains {
         let done = if self.points.is_empty() {
             lines_of_numbers(each)
         } else {
-            self.points.iter().map(|p| p.0).try_for_each(each)
+            self.points.iter().map(|p| Some(p.0)).try_for_each(each)
         };
         if global.json {
             // The object is whole even if the list of points is not.

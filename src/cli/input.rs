@@ -298,14 +298,26 @@ impl std::fmt::Display for CompileFault {
     }
 }
 
-/// Calls `each` with the numbers on every line of standard input that has any; `#` begins a
-/// comment, and a first line without any number is a heading.
+/// Calls `each` with the numbers on every line of standard input that has any, and with none before it
+/// waits for more, so that who asks one by one is answered; `#` begins a comment, and a first line
+/// without any number is a heading.
 pub(super) fn lines_of_numbers<const N: usize>(
-    mut each: impl FnMut([f64; N]) -> anyhow::Result<()>,
+    mut each: impl FnMut(Option<[f64; N]>) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
+    // As much as a pipe holds.
+    let mut input = io::BufReader::with_capacity(1 << 16, io::stdin().lock());
+    let mut line = String::new();
+    let mut number = 0;
     let mut is_first = true;
-    for (i, line) in io::stdin().lock().lines().enumerate() {
-        let line = line.context("standard input")?;
+    loop {
+        if !input.buffer().contains(&b'\n') {
+            each(None)?;
+        }
+        line.clear();
+        number += 1;
+        if input.read_line(&mut line).context("standard input")? == 0 {
+            return Ok(());
+        }
         let line = line.trim_start_matches('\u{feff}');
         let line = line.split('#').next().unwrap_or_default().trim();
         if line.is_empty() {
@@ -317,8 +329,7 @@ pub(super) fn lines_of_numbers<const N: usize>(
             continue;
         }
         let Numbers(numbers) =
-            line.parse().with_context(|| format!("standard input, line {}", i + 1))?;
-        each(numbers)?;
+            line.parse().with_context(|| format!("standard input, line {number}"))?;
+        each(Some(numbers))?;
     }
-    Ok(())
 }

@@ -49,6 +49,12 @@ impl<'a> Batch<'a> {
         if self.rays.len() < BATCH { Ok(()) } else { self.flush() }
     }
 
+    /// Answers all rays that wait, where it is seen.
+    pub(super) fn answer(&mut self) -> anyhow::Result<()> {
+        self.flush()?;
+        Ok(self.out.flush()?)
+    }
+
     /// Answers all rays that wait.
     pub(super) fn flush(&mut self) -> anyhow::Result<()> {
         let (print, done) = (self.print, self.done);

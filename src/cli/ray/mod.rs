@@ -105,8 +105,11 @@ impl Rays {
             (None, Some(origin), Some(dir)) => {
                 batch.push(Ray::new(origin.into(), dir.into()))
             }
-            (None, ..) => lines_of_numbers(|[a, b, c, d, e, f]| {
-                batch.push(Ray::new(DVec3::new(a, b, c), DVec3::new(d, e, f)))
+            (None, ..) => lines_of_numbers(|numbers| match numbers {
+                Some([a, b, c, d, e, f]) => {
+                    batch.push(Ray::new(DVec3::new(a, b, c), DVec3::new(d, e, f)))
+                }
+                None => batch.answer(),
             }),
         };
         // Rays before one that is none are answered.
