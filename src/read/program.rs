@@ -1,10 +1,11 @@
 //! The installed OpenSCAD, run for at most so long.
 
 use std::ffi::OsStr;
-use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
+use std::sync::mpsc::{self, Receiver};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use super::ReadOptions;
@@ -56,13 +57,11 @@ pub(super) fn run(
     more: impl FnOnce(&mut Command) -> io::Result<()>,
 ) -> Result<Done, Fault> {
     let other = |error| Fault::Other(ReadErrorKind::Io(error));
-    let mut log = tempfile::tempfile().map_err(other)?;
     let program = name(options).map_err(other)?;
     let mut command = Command::new(&program);
     // Without --render, $preview is true and many models leave parts out.
     command.arg("--render=1").arg("-o").arg(made);
-    command.stdin(Stdio::null()).stdout(Stdio::null());
-    command.stderr(log.try_clone().map_err(other)?);
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
     more(&mut command).map_err(other)?;
     let mut child = match command.arg(of).spawn() {
         Ok(child) => child,
@@ -71,6 +70,7 @@ pub(super) fn run(
         }
         Err(error) => return Err(other(error)),
     };
+    let speech = child.stderr.take().map(Speech::of);
     let (start, limit) = (Instant::now(), options.openscad_limit);
     let status = loop {
         if let Some(status) = child.try_wait().map_err(other)? {
@@ -83,15 +83,56 @@ pub(super) fn run(
         }
         std::thread::sleep(Duration::from_millis(5));
     };
-    let said = speech(&mut log).map_err(other)?;
-    Ok(Done { status, said })
+    Ok(Done { status, said: speech.map(Speech::end).unwrap_or_default() })
 }
 
-/// What is in its log.
-fn speech(log: &mut File) -> io::Result<String> {
-    const MOST: u64 = 1 << 20;
-    let mut said = Vec::new();
-    log.seek(SeekFrom::Start(0))?;
-    log.take(MOST).read_to_end(&mut said)?;
-    Ok(String::from_utf8_lossy(&said).trim().to_owned())
+/// What a program says, of which the beginning is kept.
+struct Speech {
+    beginning: Arc<Mutex<Vec<u8>>>,
+    end: Receiver<()>,
+}
+
+impl Speech {
+    /// How much of it is kept: 1 MiB.
+    const MOST: usize = 1 << 20;
+
+    /// Listens in a thread of its own, so that the program never waits for somebody to listen.
+    fn of(mut said: impl Read + Send + 'static) -> Self {
+        let beginning = Arc::new(Mutex::new(Vec::new()));
+        let (send, end) = mpsc::channel();
+        let kept = beginning.clone();
+        std::thread::spawn(move || {
+            let mut some = [0; 1 << 13];
+            while let Ok(length @ 1..) = said.read(&mut some) {
+                let Ok(mut kept) = kept.lock() else { return };
+                let room = Self::MOST - kept.len();
+                kept.extend_from_slice(&some[..length.min(room)]);
+            }
+            // Nobody waits for it if the program was too slow.
+            let _ = send.send(());
+        });
+        Self { beginning, end }
+    }
+
+    /// All of it, when the program has ended. What that has started itself may go on, and hold its
+    /// standard error: it is not waited for.
+    fn end(self) -> String {
+        let _ = self.end.recv_timeout(Duration::from_secs(1));
+        let beginning = self.beginning.lock();
+        let bytes = beginning.map(|bytes| bytes.clone()).unwrap_or_default();
+        String::from_utf8_lossy(&bytes).trim().to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_a_long_speech_the_beginning_is_kept() {
+        let speech = Speech::of(io::repeat(b'a').take(5 << 20));
+        assert_eq!(speech.end().len(), Speech::MOST);
+        assert_eq!(Speech::of(&b" all is well\n"[..]).end(), "all is well");
+        assert_eq!(Speech::of(io::empty()).end(), "");
+    }
 }
