@@ -2,6 +2,7 @@
 //! each with an interval that is true.
 
 mod adaptive;
+mod apart;
 mod beam;
 mod binomial;
 mod bracket;
@@ -21,6 +22,7 @@ mod strata;
 mod volume;
 
 pub use adaptive::{Unsuited, adaptive, adaptive_with};
+pub use apart::{Apart, Search, apart};
 pub use bracket::bracket;
 pub use compare::{Comparison, Verdict, Worst, compare, compare_with};
 pub use estimate::{Estimate, Method};
