@@ -4,16 +4,19 @@
 //! has no exact solid, they say. Here [`faceted`] replaces balls, cylinders
 //! and cones by the polyhedra that OpenSCAD makes of them, and [`boundary`] finds the
 //! surface of what is then made of meshes alone, by the Manifold library
-//! (<https://github.com/elalish/manifold>).
+//! (<https://github.com/elalish/manifold>). [`surface()`] does both with facets as near to the
+//! curves as is asked for.
 
 mod boundary;
 mod flatten;
 mod hull;
 #[cfg(test)]
 mod hull_tests;
+mod longest;
 mod parts;
 mod quickhull;
 mod replace;
+mod surface;
 
 use thiserror::Error;
 
@@ -22,8 +25,10 @@ pub(crate) use flatten::{section, shadow};
 pub(crate) use hull::{Operand, hull, sum, triangles_of_sum};
 pub(crate) use parts::{Fine, bounds_of_union, of_meshes, parts};
 pub use replace::{Faceted, faceted};
+pub use surface::surface;
 
 use crate::mesh::MeshError;
+use crate::shown::Shown;
 
 /// Why a solid has no facets.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -35,6 +40,12 @@ pub enum FacetsError {
     /// So few segments make no polygon.
     #[error("a curve has at least 3 segments, not {0}")]
     TooFewSegments(u32),
+    /// Facets cannot be as near to curves as that.
+    #[error("a tolerance is a length above zero, not {}", Shown(*.0))]
+    BadTolerance(f64),
+    /// A half-space that nothing else bounds.
+    #[error("a solid without bounds has no mesh")]
+    Unbounded,
     /// There would be too many of them.
     #[error("there would be {count} triangles, which is more than the limit of {limit}")]
     TooMany {

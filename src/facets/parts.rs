@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::longest::longest;
 use super::replace::{cuboid, radius_at};
 use super::{Faceted, FacetsError, boundary};
 use crate::aabb::Aabb;
@@ -15,8 +16,10 @@ use crate::solid::{Kind, Solid};
 
 /// What polyhedra stand for curves.
 pub(crate) struct Fine<'a> {
-    /// How many segments a curve gets by its largest radius.
-    pub(crate) segments: &'a dyn Fn(f64) -> u32,
+    /// How many segments a circle gets by the largest radius that its map makes of it.
+    pub(crate) circle: &'a dyn Fn(f64) -> u32,
+    /// The same of a ball's equator.
+    pub(crate) ball: &'a dyn Fn(f64) -> u32,
     /// How many triangles there may be in all.
     pub(crate) most_triangles: u64,
 }
@@ -112,14 +115,12 @@ impl Making<'_> {
         if count > limit { Err(FacetsError::TooMany { count, limit }) } else { Ok(()) }
     }
 
-    /// A leaf under a map; nothing of a half-space beyond everything.
+    /// A leaf under a map.
     fn leaf(
         &mut self,
         solid: &Solid,
         map: &DAffine3,
     ) -> Result<Option<Mesh>, FacetsError> {
-        let m = map.matrix3;
-        let stretch = m.x_axis.length().max(m.y_axis.length()).max(m.z_axis.length());
         let mesh = match solid.kind() {
             Kind::Mesh(mesh) => {
                 self.count(mesh.faces().len() as u64)?;
@@ -134,7 +135,7 @@ impl Making<'_> {
                 bottom,
                 top,
             }) if *bottom <= -radius && *top >= *radius => {
-                let segments = (self.fine.segments)(radius * stretch);
+                let segments = (self.fine.ball)(radius * longest(&map.matrix3));
                 self.count(round::ball_triangles(segments))?;
                 mapped(&ball(segments, *radius)?, map)?
             }
@@ -144,7 +145,10 @@ impl Making<'_> {
                 top,
             }) => {
                 let radii = [*bottom, *top].map(|z| radius_at(profile, z));
-                let segments = (self.fine.segments)(radii[0].max(radii[1]) * stretch);
+                // Nothing moves along the axis, so it does not matter how that is stretched.
+                let flat = map.matrix3 * DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0));
+                let segments =
+                    (self.fine.circle)(radii[0].max(radii[1]) * longest(&flat));
                 self.count(round::frustum_triangles(segments))?;
                 let radii = radii.map(|r| r * with_area(segments));
                 mapped(&round::frustum(segments, radii, [*bottom, *top])?, map)?
@@ -161,7 +165,8 @@ impl Making<'_> {
         Ok(Some(mesh))
     }
 
-    /// As much of a half-space as there is of anything else, and more.
+    /// As much of a half-space as there is of anything else, and more; of one beyond everything a
+    /// box that is there as well.
     fn half_space(
         &self,
         normal: DVec3,
@@ -172,10 +177,11 @@ impl Making<'_> {
         let across = inverse.transpose() * normal;
         let offset = (offset + across.dot(map.translation)) / across.length();
         let far = 4.0 * self.reach;
-        if offset.is_nan() || offset < -far {
+        if offset.is_nan() {
             return Ok(None);
         }
-        let top = offset.min(far);
+        // One that reaches nothing is left as far away: a union with it has no bounds.
+        let top = offset.clamp(-1.5 * far, far);
         let z = across.normalize_or(DVec3::Z);
         let (x, y) = z.any_orthonormal_pair();
         let frame = DAffine3::from_mat3(DMat3::from_cols(x, y, z));
@@ -185,13 +191,13 @@ impl Making<'_> {
 }
 
 /// By what the radius of a polygon is larger than that of a circle of the same area.
-fn with_area(segments: u32) -> f64 {
+pub(super) fn with_area(segments: u32) -> f64 {
     let half = PI / f64::from(segments);
     (half / (half.sin() * half.cos())).sqrt()
 }
 
 /// A polyhedron with the volume of a ball.
-fn ball(segments: u32, radius: f64) -> Result<Mesh, MeshError> {
+pub(super) fn ball(segments: u32, radius: f64) -> Result<Mesh, MeshError> {
     let mesh = round::ball(segments, radius)?;
     let scale = (4.0 / 3.0 * PI * radius.powi(3) / mesh.volume()).cbrt();
     let points = mesh.points().iter().map(|&p| scale * p).collect();
@@ -216,7 +222,7 @@ fn moved(
 }
 
 /// How far from the origin the leaves of a solid reach that have bounds.
-fn reach(solid: &Solid) -> f64 {
+pub(super) fn reach(solid: &Solid) -> f64 {
     let mut reach: f64 = 0.0;
     let mut open = vec![(solid, DAffine3::IDENTITY)];
     while let Some((solid, map)) = open.pop() {

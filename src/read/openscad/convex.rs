@@ -169,12 +169,13 @@ pub(super) fn fine<T>(reading: &Reading<'_>, make: impl FnOnce(&Fine<'_>) -> T) 
     // A quarter of the distance are twice the segments.
     let tolerance = 0.25 * reading.options.facet_tolerance;
     let segments = |radius: f64| curve::fine(radius, tolerance, reading).max(FEWEST);
-    make(&Fine { segments: &segments, most_triangles: reading.options.max_facets })
+    let most_triangles = reading.options.max_facets;
+    make(&Fine { circle: &segments, ball: &segments, most_triangles })
 }
 
 /// The polygons of an outline.
 pub(super) fn polygons(outline: &Outline, reading: &Reading<'_>) -> Paths {
-    fine(reading, |fine| outline.polygons(fine.segments))
+    fine(reading, |fine| outline.polygons(fine.circle))
 }
 
 pub(super) fn fault(call: &Call<'_>, error: FacetsError) -> Located {
@@ -185,6 +186,8 @@ pub(super) fn fault(call: &Call<'_>, error: FacetsError) -> Located {
         FacetsError::Mesh(error) => ReadErrorKind::Mesh(error),
         error @ (FacetsError::NoFacets(_)
         | FacetsError::TooFewSegments(_)
+        | FacetsError::BadTolerance(_)
+        | FacetsError::Unbounded
         | FacetsError::NotTaken(_)
         | FacetsError::Stopped) => ReadErrorKind::Facets(error),
     };
