@@ -2,6 +2,7 @@
 //!
 //! A solid is a tree of quadrics, boxes and closed meshes under affine maps, combined by
 //! union, intersection and difference. It is not meshed to be asked: the only geometric operation
+//! union, intersection and difference. No answer needs a mesh: the only geometric operation
 //! is a ray, whose answer is the exact list of stretches inside the solid. Pictures,
 //! volumes and membership are built on that.
 //!
@@ -41,7 +42,7 @@
 //! # Files
 //!
 //! [`read::file`] takes OpenSCAD's `.csg` and `.scad` and the mesh formats `.obj`, `.stl`,
-//! `.off` and `.3mf`.
+//! `.off` and `.3mf`. [`facets::surface()`] and [`write`](mod@write) make meshes for those who need some.
 //!
 //! # Numbers
 //!
@@ -95,6 +96,7 @@ mod section;
 pub mod shape;
 mod shown;
 mod solid;
+pub mod write;
 
 pub use aabb::Aabb;
 pub use census::Census;
