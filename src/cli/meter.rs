@@ -23,11 +23,25 @@ pub(super) struct Meter {
 impl Meter {
     /// A bar for so many rays, or a count where nobody knows how many there will be.
     pub(super) fn new(global: Global, what: &'static str, rays: Option<u64>) -> Self {
-        let bar = ProgressBar::with_draw_target(rays, ProgressDrawTarget::hidden());
         let template = match rays {
             Some(_) => "{msg} {wide_bar} {percent} %, {eta} left",
             None => "{msg} {spinner} {human_pos} rays, {elapsed}",
         };
+        Self::with(global, what, rays, template)
+    }
+
+    /// A count of triangles.
+    pub(super) fn of_triangles(global: Global, what: &'static str) -> Self {
+        Self::with(global, what, None, "{msg} {spinner} {human_pos} triangles, {elapsed}")
+    }
+
+    fn with(
+        global: Global,
+        what: &'static str,
+        goal: Option<u64>,
+        template: &str,
+    ) -> Self {
+        let bar = ProgressBar::with_draw_target(goal, ProgressDrawTarget::hidden());
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }

@@ -14,6 +14,7 @@ mod excerpt;
 mod input;
 mod interrupt;
 mod measure;
+mod mesh;
 mod meter;
 mod numbers;
 mod output;
@@ -54,7 +55,8 @@ Examples:
   solidray render part.scad -o part.png
   solidray volume part.csg --rel-tol 1e-5
   solidray contains part.csg 0,0,5 1,2,3
-  solidray compare part.scad part.stl --tol 0.01"
+  solidray compare part.scad part.stl --tol 0.01
+  solidray mesh part.scad -o part.stl --tolerance 0.01"
 )]
 struct Cli {
     #[command(subcommand)]
@@ -104,6 +106,7 @@ enum Command {
     Merge(measure::Merge),
     Compare(compare::Compare),
     Overlaps(overlaps::Overlaps),
+    Mesh(mesh::Mesh),
     Tradeoff(tradeoff::Tradeoff),
     Completions(completions::Completions),
     Man(completions::ManPage),
@@ -128,6 +131,7 @@ impl Command {
             Self::Merge(command) => command.run(global, out),
             Self::Compare(command) => command.run(global, out),
             Self::Overlaps(command) => command.run(global, out),
+            Self::Mesh(command) => command.run(global, out),
             Self::Tradeoff(command) => command.run(global, out),
             Self::Completions(command) => command.run(out),
             Self::Man(command) => command.run(out),
