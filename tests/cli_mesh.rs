@@ -99,6 +99,19 @@ fn what_is_farther_than_the_tolerance_is_said() {
     assert!(desk.path("lens.stl").exists(), "it is written all the same");
 }
 
+/// Where nothing is looked at nothing is known.
+#[test]
+fn what_is_thinner_than_the_tolerance_is_not_within_it() {
+    let desk = Desk::new();
+    desk.put("sheet.csg", "cube(size = [10, 10, 0.0000001], center = false);");
+    let args = ["mesh", "sheet.csg", "-o", "sheet.stl", "--lines=3000"];
+    let done = desk.run(&[&args[..], &["--tolerance=0.1"]].concat());
+    assert_eq!(done.code, 1, "{} {}", done.out, done.err);
+    assert!(done.out.contains("too thin for this tolerance"), "{}", done.out);
+    let done = desk.run(&[&args[..], &["--tolerance=0.000001"]].concat());
+    assert_eq!(done.code, 0, "{} {}", done.out, done.err);
+}
+
 #[test]
 fn standard_output_takes_the_mesh() {
     let desk = Desk::new();

@@ -54,8 +54,14 @@ impl Looked {
         self.from_mesh.largest.max(self.from_solid.largest)
     }
 
-    /// Whether nothing was found that is farther away.
+    /// Whether there are points to look from on both.
+    pub(super) fn has_points(&self) -> bool {
+        self.from_mesh.points > 0 && self.from_solid.points > 0
+    }
+
+    /// Whether nothing was found that is farther away, of something.
     pub(super) fn is_within(&self, tolerance: f64) -> bool {
-        self.largest() <= tolerance && self.from_mesh.lost + self.from_solid.lost == 0
+        let lost = self.from_mesh.lost + self.from_solid.lost;
+        self.has_points() && self.largest() <= tolerance && lost == 0
     }
 }

@@ -36,8 +36,8 @@ use report::Written;
 /// A .3mf has an object for each part, which is what shares a name or a colour; parts that overlap
 /// do so there. Other formats have one mesh of the whole, without colours.
 ///
-/// The exit code is 0 if nothing was found farther away than the tolerance, 1 if something was
-/// (the file is written all the same), and 2 if there is no mesh. The file is written in the end:
+/// The exit code is 0 if nothing was found farther away than the tolerance, 1 if something was, or
+/// all is too thin (the file is written all the same), and 2 if there is no mesh. The file is written in the end:
 /// Ctrl-C leaves none.
 #[derive(Args, Debug)]
 pub(super) struct Mesh {

@@ -166,7 +166,11 @@ impl Object {
         }
         let of_solid = in_words(&looked.volume);
         lines.push(format!("volume     {volume} of the mesh, {of_solid} of the solid"));
-        if !looked.is_within(tolerance) {
+        if !looked.has_points() {
+            let hint =
+                "           too thin for this tolerance: a smaller one looks closer";
+            lines.push(hint.to_owned());
+        } else if !looked.is_within(tolerance) {
             lines.push("           farther than the tolerance".to_owned());
         }
     }
