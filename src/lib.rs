@@ -1,7 +1,6 @@
 //! Constructive solid geometry by rays.
 //!
 //! A solid is a tree of quadrics, boxes and closed meshes under affine maps, combined by
-//! union, intersection and difference. It is not meshed to be asked: the only geometric operation
 //! union, intersection and difference. No answer needs a mesh: the only geometric operation
 //! is a ray, whose answer is the exact list of stretches inside the solid. Pictures,
 //! volumes and membership are built on that.
@@ -42,7 +41,8 @@
 //! # Files
 //!
 //! [`read::file`] takes OpenSCAD's `.csg` and `.scad` and the mesh formats `.obj`, `.stl`,
-//! `.off` and `.3mf`. [`facets::surface()`] and [`write`](mod@write) make meshes for those who need some.
+//! `.off` and `.3mf`. [`facets::surface()`] and [`write`](mod@write)
+//! make meshes for those who need some.
 //!
 //! # Numbers
 //!
