@@ -38,6 +38,20 @@
 //! # Ok::<(), solidray::CompileError>(())
 //! ```
 //!
+//! # What to ask
+//!
+//! | for | there is |
+//! |---|---|
+//! | a picture | [`render::picture()`], and [`render::trace`] for what is seen before any colour |
+//! | a cut, or how thick something is | [`Solid::section`], [`render::thickness`] |
+//! | one ray | [`Tracer::spans`], [`Tracer::first_hit`], [`Tracer::next_hit`] |
+//! | points | [`Scene::contains`], [`Scene::contains_all`], [`Tracer::classify`] |
+//! | a volume | [`measure::volume()`]; [`measure::adaptive`] for twelve digits, [`measure::bracket`] for certain bounds |
+//! | surface, centroid, inertia, mass | [`measure::properties`] |
+//! | whether two solids are one | [`measure::compare()`] |
+//! | parts that collide | [`measure::overlaps`] |
+//! | a mesh for printing | [`facets::surface()`], [`measure::apart`], [`write`](mod@write) |
+//!
 //! # Files
 //!
 //! [`read::file`] takes OpenSCAD's `.csg` and `.scad` and the mesh formats `.obj`, `.stl`,
