@@ -5,7 +5,7 @@ use serde::Serialize;
 use solidray::measure::Apart;
 
 use super::super::Global;
-use super::super::output::{EstimateJson, in_words, point};
+use super::super::output::{EstimateJson, earned, in_words};
 use super::super::pieces::{hex, label};
 use super::{Looked, Object, Seconds};
 
@@ -148,7 +148,7 @@ impl Object {
             [(&looked.from_mesh, "mesh", "solid"), (&looked.from_solid, "solid", "mesh")];
         for (apart, from, to) in ways {
             let Apart { largest, ends, points, lost, thin, .. } = apart;
-            let place = |[from, _]: [DVec3; 2]| format!(", at {}", point(from));
+            let place = |[from, _]: [DVec3; 2]| format!(", at {}", near(from, tolerance));
             lines.push(format!(
                 "distance   {largest:.3e} from the {from} to the {to}: the largest found at {points} points{}",
                 ends.map(place).unwrap_or_default()
@@ -165,6 +165,7 @@ impl Object {
             }
         }
         let of_solid = in_words(&looked.volume);
+        let volume = earned(volume, looked.volume.half_width());
         lines.push(format!("volume     {volume} of the mesh, {of_solid} of the solid"));
         if !looked.has_points() {
             let hint =
@@ -174,4 +175,13 @@ impl Object {
             lines.push("           farther than the tolerance".to_owned());
         }
     }
+}
+
+/// A point as `x,y,z`, to the digits that matter beside a tolerance.
+fn near(p: DVec3, tolerance: f64) -> String {
+    #[expect(clippy::cast_possible_truncation, reason = "between 0 and 300")]
+    #[expect(clippy::cast_sign_loss, reason = "between 0 and 300")]
+    let decimals = (2.0 - tolerance.log10().floor()).clamp(0.0, 300.0) as usize;
+    let DVec3 { x, y, z } = p;
+    format!("{x:.decimals$},{y:.decimals$},{z:.decimals$}")
 }
