@@ -1,5 +1,7 @@
 //! What a tree is made of.
 
+use std::collections::HashMap;
+
 use crate::op::Op;
 use crate::solid::{Solid, View};
 
@@ -22,33 +24,73 @@ pub struct Census {
 }
 
 impl Solid {
-    /// Counts what the tree is made of.
+    /// Counts what the tree is made of. Numbers end at `u64::MAX`.
     pub fn census(&self) -> Census {
-        let mut census = Census::default();
-        let mut rest = vec![(self, 1)];
-        while let Some((solid, depth)) = rest.pop() {
-            let (children, below) = match solid.view() {
-                View::Primitive(_) | View::Mesh(_) => {
-                    census.leaves += 1;
-                    (&[][..], depth)
-                }
-                View::Mapped(_, child) => {
-                    census.maps += 1;
-                    (std::slice::from_ref(child), depth + 1)
-                }
-                View::Tagged(child) => (std::slice::from_ref(child), depth),
-                View::Boolean(op, children) => {
-                    *match op {
-                        Op::Union => &mut census.unions,
-                        Op::Intersection => &mut census.intersections,
-                        Op::Difference => &mut census.differences,
-                    } += 1;
-                    (children, depth + 1)
-                }
-            };
-            census.depth = census.depth.max(depth);
-            rest.extend(children.iter().map(|child| (child, below)));
+        let mut known: HashMap<usize, Census> = HashMap::new();
+        let mut open = vec![(self, false)];
+        while let Some((solid, seen)) = open.pop() {
+            if known.contains_key(&solid.address()) {
+                continue;
+            }
+            let children = solid.children();
+            if !seen {
+                open.push((solid, true));
+                open.extend(children.iter().map(|child| (child, false)));
+                continue;
+            }
+            let below = children.iter().map(|child| known[&child.address()]);
+            let sum = below.reduce(Census::beside).unwrap_or_default();
+            known.insert(solid.address(), sum.under(solid.view()));
         }
-        census
+        known[&self.address()]
+    }
+}
+
+impl Census {
+    fn beside(self, other: Self) -> Self {
+        Self {
+            leaves: self.leaves.saturating_add(other.leaves),
+            unions: self.unions.saturating_add(other.unions),
+            intersections: self.intersections.saturating_add(other.intersections),
+            differences: self.differences.saturating_add(other.differences),
+            maps: self.maps.saturating_add(other.maps),
+            depth: self.depth.max(other.depth),
+        }
+    }
+
+    /// The same with the node above.
+    fn under(mut self, node: View<'_>) -> Self {
+        let count = match node {
+            View::Primitive(_) | View::Mesh(_) => &mut self.leaves,
+            View::Mapped(..) => &mut self.maps,
+            View::Boolean(Op::Union, _) => &mut self.unions,
+            View::Boolean(Op::Intersection, _) => &mut self.intersections,
+            View::Boolean(Op::Difference, _) => &mut self.differences,
+            View::Tagged(_) => return self,
+        };
+        *count = count.saturating_add(1);
+        self.depth += 1;
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shared_subtrees_count_each_time() {
+        let mut solid = Solid::ball(1.0).named("ball");
+        for _ in 0..100 {
+            solid = (solid.clone() - solid).translated(glam::DVec3::X);
+        }
+        let Census { leaves, unions, intersections, differences, maps, depth } =
+            solid.census();
+        assert_eq!((leaves, differences, maps), (u64::MAX, u64::MAX, u64::MAX));
+        assert_eq!((unions, intersections, depth), (0, 0, 201));
+        assert_eq!(
+            Solid::empty().census(),
+            Census { unions: 1, depth: 1, ..Census::default() }
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! What is seen through: colours that are not opaque, and what OpenSCAD's `%` and `#` mark.
 
 use solidray::read::Marks;
-use solidray::{Color, Op, Solid};
+use solidray::{Color, Op, Scene, Solid};
 
 /// OpenSCAD's colour of what `#` marks.
 const HIGHLIGHTED: Color =
@@ -22,16 +22,13 @@ pub(super) struct Layers {
 }
 
 impl Layers {
-    /// All of a solid, as if its colours were opaque.
-    pub(super) fn opaque(solid: Solid) -> Self {
-        Self { opaque: solid, translucent: Vec::new(), too_many: 0 }
-    }
-
-    /// A solid with what is marked in its model. Parts of one colour are seen as one; what is
-    /// without any opacity is not seen.
-    pub(super) fn new(solid: Solid, marks: Marks) -> Self {
-        let mut layers = Self::opaque(solid);
-        layers.separate();
+    /// A solid with what is marked in its model, and its own colours taken apart if some of them are
+    /// seen through. Parts of one colour are seen as one; what is without any opacity is not seen.
+    pub(super) fn new(solid: Solid, has_glass: bool, marks: Marks) -> Self {
+        let mut layers = Self { opaque: solid, translucent: Vec::new(), too_many: 0 };
+        if has_glass {
+            layers.separate();
+        }
         for (solid, color) in
             [(marks.background, BACKGROUND), (marks.highlighted, HIGHLIGHTED)]
         {
@@ -45,10 +42,6 @@ impl Layers {
     /// Takes what is not opaque from what is.
     fn separate(&mut self) {
         let parts = self.opaque.parts();
-        let opacity = |color: Option<Color>| color.map_or(1.0, |color| color.rgba[3]);
-        if parts.iter().all(|(part, _)| opacity(part.color) >= 1.0) {
-            return;
-        }
         let mut opaque = Vec::new();
         let mut colors: Vec<(Color, Vec<Solid>)> = Vec::new();
         for (part, solid) in parts {
@@ -81,6 +74,12 @@ impl Layers {
     }
 }
 
+/// Whether a leaf of a scene has a colour that is not opaque.
+pub(super) fn has_glass(scene: &Scene) -> bool {
+    let mut leaves = (0..).take(scene.leaf_count()).map(|leaf| scene.leaf(leaf));
+    leaves.any(|leaf| leaf.part.color.is_some_and(|color| color.rgba[3] < 1.0))
+}
+
 fn is_empty(solid: &Solid) -> bool {
     matches!(solid.view(), solidray::View::Boolean(Op::Union, []))
 }
@@ -98,14 +97,16 @@ mod tests {
             + ball(glass(1.0, 0.5))
             + ball(glass(0.0, 0.0))
             + Solid::ball(2.0);
-        let layers = Layers::new(solid, Marks::default());
+        assert!(has_glass(&Scene::compile(&solid).expect("balls")));
+        assert!(!has_glass(&Scene::compile(&Solid::ball(2.0)).expect("a ball")));
+        let layers = Layers::new(solid, true, Marks::default());
         assert_eq!(layers.opaque.census().leaves, 2);
         let [(solid, color)] = &layers.translucent[..] else { panic!("one colour") };
         assert_eq!((solid.census().leaves, *color), (2, glass(1.0, 0.5)));
 
         #[expect(clippy::cast_precision_loss, reason = "small numbers")]
         let many = (0..MOST + 3).map(|i| ball(glass(i as f32 * 0.01, 0.5)));
-        let layers = Layers::new(Solid::boolean(Op::Union, many), Marks::default());
+        let layers = Layers::new(Solid::boolean(Op::Union, many), true, Marks::default());
         assert_eq!((layers.translucent.len(), layers.too_many), (MOST, 3));
         assert_eq!(layers.opaque.census().leaves, 3);
     }

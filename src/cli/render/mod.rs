@@ -30,7 +30,7 @@ use super::watch::watch;
 use super::{Answer, Global};
 use cut::Cut;
 use draw::{Drawing, Format, Kind};
-use layers::{Layers, MOST};
+use layers::{Layers, MOST, has_glass};
 use numbers::joined;
 use target::Target;
 use view::ViewArgs;
@@ -207,13 +207,17 @@ impl Render {
 
         let start = Instant::now();
         let mut objects = Vec::new();
-        let layers = match self.look {
-            LookArg::Object => Layers::opaque(colored(&model.solid, &mut objects)),
-            LookArg::Shaded => Layers::new(model.solid, model.marks),
-            LookArg::Normal | LookArg::Depth | LookArg::Leaf | LookArg::Thickness => {
-                Layers::opaque(model.solid)
-            }
+        let solid = match self.look {
+            LookArg::Object => colored(&model.solid, &mut objects),
+            LookArg::Shaded
+            | LookArg::Normal
+            | LookArg::Depth
+            | LookArg::Leaf
+            | LookArg::Thickness => model.solid,
         };
+        let whole = self.compile(&solid)?;
+        let has_glass = self.look == LookArg::Shaded && has_glass(&whole);
+        let layers = Layers::new(solid, has_glass, model.marks);
         if layers.too_many > 0 && !global.quiet {
             super::report::note(&format!(
                 "warning: {}: {MOST} colours are seen through, {} more are drawn as if they were opaque",
@@ -221,7 +225,9 @@ impl Render {
                 layers.too_many
             ));
         }
-        let mut scenes = Scenes::compile(&layers, |solid| self.compile(solid))?;
+        let opaque = if has_glass { self.compile(&layers.opaque)? } else { whole };
+        let compile = |solid: &Solid| self.compile(solid);
+        let mut scenes = Scenes::new(opaque, &layers, compile)?;
         warn_if_empty(&self.file, &scenes.opaque, global);
         let camera = self.view.camera.camera(&scenes.bounds());
         if self.is_cut() {
@@ -230,7 +236,10 @@ impl Render {
             let cut = |solid: Solid| {
                 self.cut.iter().fold(solid, |solid, cut| cut.applied(&solid, forward))
             };
-            scenes = Scenes::compile(&layers.changed(cut), |solid| self.compile(solid))?;
+            let layers = layers.changed(cut);
+            scenes = Scenes::new(compile(&layers.opaque)?, &layers, compile)?;
+        } else {
+            drop(layers);
         }
         let compile = start.elapsed().as_secs_f64();
 
@@ -357,16 +366,14 @@ struct Scenes {
 }
 
 impl Scenes {
-    fn compile(
+    fn new(
+        opaque: Scene,
         layers: &Layers,
         compile: impl Fn(&Solid) -> anyhow::Result<Scene>,
     ) -> anyhow::Result<Self> {
         let each = layers.translucent.iter();
         let translucent = each.map(|(solid, color)| Ok((compile(solid)?, *color)));
-        Ok(Self {
-            opaque: compile(&layers.opaque)?,
-            translucent: translucent.collect::<anyhow::Result<_>>()?,
-        })
+        Ok(Self { opaque, translucent: translucent.collect::<anyhow::Result<_>>()? })
     }
 
     fn translucent(&self) -> Vec<Translucent<'_>> {
