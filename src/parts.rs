@@ -104,6 +104,53 @@ impl Solid {
         found.into_iter().map(whole).collect()
     }
 
+    /// What is of some of its [parts](Self::parts): those that `keep` says. Together with what is of
+    /// the others it is the solid.
+    #[must_use]
+    pub fn of_parts(&self, keep: impl Fn(&Part) -> bool) -> Self {
+        let tagged = self.with_parts();
+        // By address and part, because a colour may be that of what is around.
+        let mut done = HashMap::new();
+        let mut open = vec![(self, Part::default(), false)];
+        while let Some((solid, part, seen)) = open.pop() {
+            let this = (solid.address(), part.key());
+            if done.contains_key(&this) {
+                continue;
+            }
+            if !tagged.contains(&solid.address()) {
+                let kept = if keep(&part) { Some(solid.clone()) } else { None };
+                done.insert(this, kept);
+                continue;
+            }
+            let kind = solid.kind();
+            let is_union =
+                !matches!(kind, Kind::Boolean(Op::Intersection | Op::Difference));
+            let first = if is_union { solid.children().len() } else { 1 };
+            let (pieces, rest) =
+                solid.children().split_at(first.min(solid.children().len()));
+            let mut below = part.clone();
+            if let Kind::Tagged(tag) = kind {
+                below = below.tagged(tag);
+            }
+            if !seen {
+                open.push((solid, part, true));
+                open.extend(pieces.iter().map(|piece| (piece, below.clone(), false)));
+                continue;
+            }
+            let kept = |piece: &Self| done[&(piece.address(), below.key())].clone();
+            let mut kept = pieces.iter().filter_map(kept).peekable();
+            let found = kept.peek().is_some().then(|| match kind {
+                Kind::Boolean(op) => Self::boolean(*op, kept.chain(rest.iter().cloned())),
+                Kind::Mapped(map) => Self::boolean(Op::Union, kept).mapped(**map),
+                Kind::Tagged(tag) => Self::boolean(Op::Union, kept).tagged(tag.clone()),
+                Kind::Primitive(_) | Kind::Mesh(_) => Self::boolean(Op::Union, kept),
+            });
+            done.insert(this, found);
+        }
+        let whole = done.remove(&(self.address(), Part::default().key()));
+        whole.flatten().unwrap_or_else(Self::empty)
+    }
+
     /// The operands of the topmost union that has several, in the order of the file, and where each
     /// stands, or the first leaf in it, if that is known; the solid itself if there is no such union
     /// at the top, or only one within what counts as one leaf by [`Solid::as_outline`].
@@ -192,6 +239,7 @@ fn put_back(mut piece: Solid, mut outer: Option<usize>, around: &[Around<'_>]) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Scene;
     use glam::DVec3;
 
     fn colored(solid: Solid, red: f32) -> Solid {
@@ -215,6 +263,34 @@ mod tests {
         assert_eq!(colors(&colored(both, 0.7)), [Some(0.7)]);
         assert_eq!(colors(&(a.clone() + (b + a))), [Some(0.1), Some(0.2)]);
         assert_eq!(colors(&Solid::boolean(Op::Intersection, [])), [None]);
+    }
+
+    #[test]
+    fn what_is_of_parts_is_the_solid_again() {
+        let (a, b) = (colored(Solid::ball(1.0), 0.1), colored(Solid::ball(1.5), 0.2));
+        let plain = Solid::cuboid(DVec3::ONE).translated(DVec3::Y);
+        let both = a.clone() + (plain.clone() + b.clone()).translated(DVec3::X);
+        let solid = (both.clone() - a.clone().translated(DVec3::NEG_X))
+            + colored(both.clone() & Solid::cuboid(DVec3::splat(1.5)), 0.3)
+            + both.translated(DVec3::Z);
+        let inside = |solid: &Solid| {
+            let scene = Scene::compile(solid).expect("a solid");
+            let at = |i: i32| {
+                DVec3::new(f64::from(i % 11), f64::from(i / 11 % 11), f64::from(i / 121))
+            };
+            (0..1331).map(|i| scene.contains(0.43 * at(i) - 2.0)).collect::<Vec<_>>()
+        };
+        for (part, piece) in solid.parts() {
+            let [of_it, of_others] = [true, false].map(|is| {
+                inside(&solid.of_parts(|other| (other.key() == part.key()) == is))
+            });
+            assert_eq!(of_it, inside(&piece), "{part:?}");
+            let whole: Vec<bool> =
+                of_it.iter().zip(&of_others).map(|(a, b)| *a || *b).collect();
+            assert_eq!(whole, inside(&solid), "{part:?}");
+            assert!(of_it.contains(&true) && of_it != of_others);
+        }
+        assert!(inside(&solid.of_parts(|_| false)).iter().all(|is| !is));
     }
 
     #[test]

@@ -124,7 +124,7 @@ fn marks_and_glass_are_seen_through() {
     let shown = draw(&format!("{cube} %{above} {{ {cube} }}"), &[]);
     let [r, g, b] = middle(&shown);
     assert!(r < 245 && g > 150 && b > 60, "{:?} and {:?}", middle(&plain), [r, g, b]);
-    let hidden = draw(&format!("{cube} %{above} {{ {cube} }}"), &["--unmarked"]);
+    let hidden = draw(&format!("{cube} %{above} {{ {cube} }}"), &["--opaque"]);
     assert_eq!(middle(&hidden), middle(&plain));
     let pink = draw(&format!("difference() {{ {cube} #cylinder(h = 20, r = 3); }}"), &[]);
     let [r, g, b] = middle(&pink);
@@ -147,6 +147,11 @@ fn marks_and_glass_are_seen_through() {
     let alone = image::open(desk.path("alone.png")).expect("a picture").into_rgb8();
     assert!(count(&alone, |p| p != [255, 255, 229]) > 500);
     assert!(desk.run(&["volume", "alone.csg"]).out.starts_with('0'));
+
+    desk.put("glass.csg", "color([0, 0, 1, 0.5]) { cube(10); }");
+    let done =
+        desk.run(&["render", "glass.csg", "-o", "glass.png", "--imgsize", "80,60"]);
+    assert_eq!((done.code, done.err.as_str()), (0, ""));
 
     let many =
         |i: u32| format!("color([0, 0, {}, 0.5]) {{ cube({i}); }}", f64::from(i) / 64.0);
@@ -240,7 +245,7 @@ fn large_pictures_are_not_held_whole() {
     let desk = Desk::new();
     let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_solidray"))
         .args(["render", "ball.csg", "-o", "b.png", "--imgsize", "8192,8192"])
-        .args(["--samples", "1", "--camera", "0,0,0,0,0,0,200"])
+        .args(["--samples", "1", "--camera", "0,0,0,0,0,0,200", "-j", "2"])
         .current_dir(desk.path(""))
         .spawn()
         .expect("the program starts");

@@ -154,6 +154,10 @@ fn pictures_show_both_and_where_they_differ() {
 fn commands_do_what_they_say() {
     let desk = Desk::new();
     plates(&desk, "plate.csg", "printed.csg");
+    // What is marked or seen through takes no part in a comparison.
+    let cube = std::fs::read_to_string(desk.path("printed.csg")).expect("a model");
+    let marked = format!("color([0, 0, 1, 0.5]) {{ #{cube} }} %sphere(r = 30);");
+    desk.put("printed.csg", &marked);
     let more =
         ["--tol", "0.002", "--seed", "7", "--rel-tol", "1e-3", "--curves", "faceted"];
     let args = ["compare", "plate.csg", "printed.csg", "--report", "out.html"];
@@ -188,7 +192,7 @@ fn commands_do_what_they_say() {
     assert_eq!([inside(commands[1]), inside(commands[2])], [false, true]);
 
     let pictures = page.pictures();
-    for (i, name) in ["a.png", "b.png"].into_iter().enumerate() {
+    for (i, name) in ["out-a.png", "out-b.png"].into_iter().enumerate() {
         let done = pasted(&desk, commands[3 + i]);
         assert_eq!(done.code, 0, "{}", done.err);
         let drawn = image::open(desk.path(name)).expect("a picture").into_rgb8();

@@ -102,5 +102,25 @@ fn marks_within_marks_are_read_once_each() {
             model(&format!("{open} cube(1); {}", "}".repeat(depth)));
         let shown = marks.highlighted + marks.background;
         assert_eq!(bounds(&shown).max, DVec3::ONE, "{mark}");
+        assert_eq!(shown.census().leaves, 1, "{mark}");
     }
+    // What is taken away is shown by its own mark only.
+    let Model { marks, .. } = model("#difference() { cube(4); #cube(2); }");
+    assert_eq!(marks.highlighted.census().leaves, 3);
+}
+
+#[test]
+fn what_is_beside_the_model_uses_up_nothing() {
+    let twisted = |height: f64| {
+        format!(
+            "linear_extrude(height = {height}, twist = 90, slices = 40) {{ square(5); }}"
+        )
+    };
+    let text = format!("%{} {}", twisted(5.0), twisted(6.0));
+    let with = |marks, max_facets| {
+        let options = ReadOptions { marks, max_facets, ..ReadOptions::default() };
+        read::bytes(text.as_bytes(), Path::new("marks.csg"), Format::Csg, &options)
+    };
+    let enough = (1..).map(|i| 100 * i).find(|&limit| with(false, limit).is_ok());
+    assert!(with(true, enough.expect("a limit")).is_ok());
 }

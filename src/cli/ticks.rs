@@ -4,16 +4,17 @@
 /// to tell apart.
 pub(super) fn ticks(most: f32) -> impl Iterator<Item = f32> {
     let step = step(most);
-    (0_u8..).map(move |i| f32::from(i) * step).take_while(move |&n| n <= most)
+    (0..=10_u8).map(move |i| f32::from(i) * step).take_while(move |&n| n <= most)
 }
 
 /// The step from number to number: 1, 2 or 5 times a power of ten, so that there are four to ten of
 /// them. Infinite where there is nothing to tell apart.
 fn step(most: f32) -> f32 {
-    if most <= 0.0 {
+    let rough = most / 10.0;
+    // Far below any length that a picture could tell apart, tenths are nothing.
+    if !(rough >= f32::MIN_POSITIVE && rough.is_finite()) {
         return f32::INFINITY;
     }
-    let rough = most / 10.0;
     let power = 10.0_f32.powf(rough.log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
     steps.into_iter().find(|&step| step >= rough).unwrap_or(steps[3])
@@ -48,6 +49,10 @@ mod tests {
             assert!((step(most) / expected - 1.0).abs() < 1e-5, "{most}: {}", step(most));
         }
         assert!(step(0.0).is_infinite());
+        for bits in 0..200 {
+            assert!(ticks(f32::from_bits(bits << 16)).count() <= 11);
+            assert!(ticks(f32::from_bits(bits)).all(f32::is_finite) || bits == 0);
+        }
     }
 
     #[test]

@@ -83,8 +83,8 @@ const BAND_PIXELS: u32 = 1 << 21;
 /// that are white and dark grey. The picture is the same to the last bit on any number of
 /// threads.
 ///
-/// It takes some 60 MB beside the picture itself, whatever its size and `style.samples`
-/// (more for pictures more than 65,536 pixels wide).
+/// It takes some 60 MB beside the picture itself, whatever its height and `style.samples`: more for
+/// pictures wider than 65,536 pixels, divided by one more than what is seen through.
 pub fn picture<'a>(
     shown: impl Into<Shown<'a>>,
     camera: &Camera,
@@ -102,8 +102,8 @@ pub fn picture<'a>(
     image
 }
 
-/// The same picture in bands from top to bottom, each made when it is asked for: for pictures that are
-/// too large to be held whole.
+/// The same picture in bands from top to bottom, each made when it is asked for (but for the depths of
+/// [`Look::Depth`], which are looked for at once): for pictures that are too large to be held whole.
 pub fn picture_bands<'a>(
     shown: impl Into<Shown<'a>>,
     camera: &Camera,

@@ -88,13 +88,14 @@ pub(super) fn srgb8(light: Vec3) -> [u8; 3] {
     code.to_array().map(|value| value.round() as u8)
 }
 
-/// What is seen through something of this opacity, and that itself: the mean of sRGB's values and not
-/// of light, as OpenGL blends for OpenSCAD, and browsers.
-pub(super) fn covered(behind: Vec3, before: Vec3, opacity: f32) -> Vec3 {
-    if opacity <= 0.0 {
-        return behind;
-    }
-    behind.map(encoded).lerp(before.map(encoded), opacity).map(decoded)
+/// The light of what is seen through things of some opacity, and of these, the nearest last: means of
+/// sRGB's values and not of light, as OpenGL blends for OpenSCAD, and browsers.
+pub(super) fn covered(behind: Vec3, before: impl Iterator<Item = (Vec3, f32)>) -> Vec3 {
+    before
+        .fold(behind.map(encoded), |behind, (light, opacity)| {
+            behind.lerp(light.map(encoded), opacity)
+        })
+        .map(decoded)
 }
 
 /// From sRGB to linear light (IEC 61966-2-1:1999, §5.2).

@@ -84,15 +84,22 @@ pub(super) fn add(
                 let depth = hit.map_or(f64::INFINITY, |hit| hit.t);
                 // What is as near as what hides is marked on its surface.
                 layers.clear();
-                for (shader, veil) in translucent.iter().zip(veils) {
+                for (i, veil) in veils.iter().enumerate() {
                     let hit = veil.hit(x, y).filter(|hit| hit.t <= depth);
-                    layers.extend(hit.map(|hit| (hit, shader, veil)));
+                    layers.extend(hit.map(|hit| (hit, i)));
                 }
-                layers.sort_by(|(a, ..), (b, ..)| b.t.total_cmp(&a.t));
-                *pixel += layers.iter().fold(behind, |behind, (hit, shader, veil)| {
-                    let light = shader.unshadowed(veil, at, hit);
-                    covered(behind, light, shader.opacity())
+                if layers.is_empty() {
+                    *pixel += behind;
+                    continue;
+                }
+                layers.sort_unstable_by(|(a, i), (b, j)| {
+                    b.t.total_cmp(&a.t).then(i.cmp(j))
                 });
+                let before = layers.iter().map(|(hit, i)| {
+                    let shader = &translucent[*i];
+                    (shader.unshadowed(&veils[*i], at, hit), shader.opacity())
+                });
+                *pixel += covered(behind, before);
             }
         },
     );

@@ -44,14 +44,19 @@ impl Compare {
             }
         }
         if let Some(camera) = camera {
-            for (file, output, what) in [
-                (&self.a, "a.png", "The picture of A"),
-                (&self.b, "b.png", "The picture of B"),
-            ] {
+            for (file, output, what) in
+                [(&self.a, "a", "The picture of A"), (&self.b, "b", "The picture of B")]
+            {
+                // Beside the page, under a name that says whose it is.
+                let mut name = report.file_stem().unwrap_or_default().to_owned();
+                name.push(format!("-{output}.png"));
+                let mut output = option("--output", "");
+                output.push("=");
+                output.push(report.with_file_name(name));
                 let [width, height] = SIZE;
                 let size = option("--imgsize", &format!("{width},{height}"));
-                let mut words =
-                    vec![option("--output", output), size, option("--edges", "")];
+                let mut words = vec![output, size];
+                words.extend(["--edges", "--opaque"].map(OsString::from));
                 words.extend(view(camera));
                 commands.push(Command { what, line: self.line("render", file, &words) });
             }

@@ -28,6 +28,7 @@ use super::input::Reading;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, point};
 use super::render::CameraArgs;
+use super::report::note;
 use super::sampling::{SamplingArgs, positive};
 use super::typed::Typed;
 use super::{Answer, Global};
@@ -118,17 +119,19 @@ impl Compare {
         )?;
         drop(meter);
         let seconds = start.elapsed().as_secs_f64();
-        // Who asked for numbers gets them though the page cannot be written.
-        let written = match &self.report {
-            Some(path) => self.write(path, [&a, &b], bounds, &found, seconds, global),
-            None => Ok(()),
-        };
         if global.json {
             output::json(out, self.report(&found, seconds))?;
         } else {
             self.print(out, &found, seconds, global)?;
         }
-        written?;
+        if let Some(path) = &self.report {
+            // Who asked for numbers has them, whatever becomes of the page.
+            out.flush()?;
+            self.write(path, [&a, &b], bounds, &found, seconds, global)?;
+            if !global.quiet {
+                note(&format!("{} is written", path.display()));
+            }
+        }
         match found.verdict {
             Verdict::Same => Ok(Answer::Yes),
             Verdict::Different => Ok(Answer::No),

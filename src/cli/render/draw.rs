@@ -87,19 +87,17 @@ impl Drawing {
     }
 
     /// Grey in 16 bits: nothing is 0. Depths go from 65535, the nearest, to 1; thicknesses from 1 to 65535,
-    /// the largest.
+    /// the largest, as which what has no end counts too.
     fn gray(&self, numbers: &mut Numbers, file: &mut impl Write) -> anyhow::Result<()> {
         let [least, most] = numbers.range.unwrap_or_default();
-        let (dark, bright, what) = match self.numbers {
-            Some(Kind::Depth) => (most, least, "depth"),
-            Some(Kind::Thickness) | None => (0.0, most, "thickness"),
-        };
+        let is_depth = matches!(self.numbers, Some(Kind::Depth));
+        let (dark, bright, what) =
+            if is_depth { (most, least, "depth") } else { (0.0, most, "thickness") };
         let comment = format!(
             "{what} = {dark} + (grey - 1) / 65534 * ({bright} - {dark}) in units of the model; grey 0 is where nothing is"
         );
         let gray = |number: f32| {
-            let is_nothing = !number.is_finite() || (dark == 0.0 && number <= 0.0);
-            if is_nothing {
+            if number.is_nan() || (!is_depth && number <= 0.0) {
                 return 0;
             }
             let range = f64::from(bright) - f64::from(dark);

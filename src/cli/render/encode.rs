@@ -67,5 +67,38 @@ fn rows<W: Write>(
     for band in bands {
         stream.write_all(&band?)?;
     }
-    Ok(stream.finish()?)
+    stream.finish()?;
+    // Left to itself it would not say whether the end was written.
+    Ok(writer.finish()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A file on a disk with so much room.
+    struct Full(usize);
+
+    impl Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            let length = bytes.len().min(self.0);
+            self.0 -= length;
+            if length == 0 { Err(io::ErrorKind::StorageFull.into()) } else { Ok(length) }
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_picture_without_its_end_is_an_error() {
+        let bands = || (0..3).map(|_| Ok(RgbImage::new(8, 4)));
+        let mut whole = Vec::new();
+        png(&mut whole, [8, 12], bands()).expect("memory");
+        for room in 0..whole.len() {
+            assert!(png(Full(room), [8, 12], bands()).is_err(), "{room}");
+        }
+        assert!(png(Full(whole.len()), [8, 12], bands()).is_ok());
+    }
 }

@@ -1,7 +1,9 @@
 //! What is seen through: colours that are not opaque, and what OpenSCAD's `%` and `#` mark.
 
+use std::collections::HashSet;
+
 use solidray::read::Marks;
-use solidray::{Color, Op, Scene, Solid};
+use solidray::{Color, Op, Part, Scene, Solid};
 
 /// OpenSCAD's colour of what `#` marks.
 const HIGHLIGHTED: Color =
@@ -22,12 +24,12 @@ pub(super) struct Layers {
 }
 
 impl Layers {
-    /// A solid with what is marked in its model, and its own colours taken apart if some of them are
-    /// seen through. Parts of one colour are seen as one; what is without any opacity is not seen.
-    pub(super) fn new(solid: Solid, has_glass: bool, marks: Marks) -> Self {
+    /// A solid with what is marked in its model, and with its colours taken apart that are seen
+    /// through. What has one colour is seen as one; what is without any opacity is not seen.
+    pub(super) fn new(solid: Solid, glass: &[Color], marks: Marks) -> Self {
         let mut layers = Self { opaque: solid, translucent: Vec::new(), too_many: 0 };
-        if has_glass {
-            layers.separate();
+        if !glass.is_empty() {
+            layers.separate(glass);
         }
         for (solid, color) in
             [(marks.background, BACKGROUND), (marks.highlighted, HIGHLIGHTED)]
@@ -39,30 +41,19 @@ impl Layers {
         layers
     }
 
-    /// Takes what is not opaque from what is.
-    fn separate(&mut self) {
-        let parts = self.opaque.parts();
-        let mut opaque = Vec::new();
-        let mut colors: Vec<(Color, Vec<Solid>)> = Vec::new();
-        for (part, solid) in parts {
-            match part.color {
-                Some(color) if color.rgba[3] <= 0.0 => {}
-                Some(color) if color.rgba[3] < 1.0 => {
-                    match colors.iter_mut().find(|(known, _)| *known == color) {
-                        Some((_, solids)) => solids.push(solid),
-                        None => colors.push((color, vec![solid])),
-                    }
-                }
-                _ => opaque.push(solid),
-            }
-        }
-        let all = |solids| Solid::boolean(Op::Union, solids);
-        let others = colors.split_off(colors.len().min(MOST));
+    /// Takes what has these colours from what has others.
+    fn separate(&mut self, glass: &[Color]) {
+        let (shown, others) = glass.split_at(glass.len().min(MOST));
         self.too_many = others.len();
-        opaque.extend(others.into_iter().flat_map(|(_, solids)| solids));
-        self.opaque = all(opaque);
+        let has = |colors: &[Color], part: &Part| {
+            part.color.is_some_and(|color| colors.contains(&color))
+        };
+        let visible = shown.iter().filter(|color| color.rgba[3] > 0.0);
+        let layer =
+            |color: &Color| (self.opaque.of_parts(|part| has(&[*color], part)), *color);
         self.translucent =
-            colors.into_iter().map(|(color, solids)| (all(solids), color)).collect();
+            visible.map(layer).filter(|(solid, _)| !is_empty(solid)).collect();
+        self.opaque = self.opaque.of_parts(|part| !has(shown, part));
     }
 
     /// What becomes of each solid.
@@ -74,10 +65,14 @@ impl Layers {
     }
 }
 
-/// Whether a leaf of a scene has a colour that is not opaque.
-pub(super) fn has_glass(scene: &Scene) -> bool {
-    let mut leaves = (0..).take(scene.leaf_count()).map(|leaf| scene.leaf(leaf));
-    leaves.any(|leaf| leaf.part.color.is_some_and(|color| color.rgba[3] < 1.0))
+/// The colours of a scene's leaves that are not opaque, in the order of the file.
+pub(super) fn glass(scene: &Scene) -> Vec<Color> {
+    let leaves = (0..).take(scene.leaf_count()).map(|leaf| scene.leaf(leaf));
+    let mut known = HashSet::new();
+    leaves
+        .filter_map(|leaf| leaf.part.color)
+        .filter(|color| color.rgba[3] < 1.0 && known.insert(color.rgba.map(f32::to_bits)))
+        .collect()
 }
 
 fn is_empty(solid: &Solid) -> bool {
@@ -86,28 +81,57 @@ fn is_empty(solid: &Solid) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     #[test]
     fn colors_that_are_not_opaque_are_layers() {
-        let glass = |r, alpha| Color { rgba: [r, 0.0, 0.0, alpha] };
+        let color = |r, alpha| Color { rgba: [r, 0.0, 0.0, alpha] };
         let ball = |color| Solid::ball(1.0).colored(color);
-        let solid = ball(glass(1.0, 0.5))
-            + ball(glass(0.5, 1.0))
-            + ball(glass(1.0, 0.5))
-            + ball(glass(0.0, 0.0))
-            + Solid::ball(2.0);
-        assert!(has_glass(&Scene::compile(&solid).expect("balls")));
-        assert!(!has_glass(&Scene::compile(&Solid::ball(2.0)).expect("a ball")));
-        let layers = Layers::new(solid, true, Marks::default());
-        assert_eq!(layers.opaque.census().leaves, 2);
-        let [(solid, color)] = &layers.translucent[..] else { panic!("one colour") };
-        assert_eq!((solid.census().leaves, *color), (2, glass(1.0, 0.5)));
+        let layers = |solid: Solid| {
+            let scene = Scene::compile(&solid).expect("balls");
+            Layers::new(solid, &glass(&scene), Marks::default())
+        };
+        let (glass, clear) = (color(1.0, 0.5), color(0.0, 0.0));
+        let found = layers(
+            ball(glass)
+                + ball(color(0.5, 1.0))
+                + ball(glass).translated(DVec3::X)
+                + ball(clear)
+                + Solid::ball(2.0),
+        );
+        assert_eq!(found.opaque.census().leaves, 2);
+        let [(solid, found)] = &found.translucent[..] else { panic!("one colour") };
+        assert_eq!((solid.census().leaves, *found), (2, glass));
+        assert_eq!(layers(Solid::ball(2.0)).translucent.len(), 0);
 
         #[expect(clippy::cast_precision_loss, reason = "small numbers")]
-        let many = (0..MOST + 3).map(|i| ball(glass(i as f32 * 0.01, 0.5)));
-        let layers = Layers::new(Solid::boolean(Op::Union, many), true, Marks::default());
-        assert_eq!((layers.translucent.len(), layers.too_many), (MOST, 3));
-        assert_eq!(layers.opaque.census().leaves, 3);
+        let many = (0..MOST + 3).map(|i| ball(color(i as f32 * 0.01, 0.5)));
+        let apart =
+            |(i, ball): (u32, Solid)| ball.translated(9.0 * f64::from(i) * DVec3::X);
+        let found = layers(Solid::boolean(Op::Union, (0..).zip(many).map(apart)));
+        assert_eq!((found.translucent.len(), found.too_many), (MOST, 3));
+        assert_eq!(found.opaque.census().leaves, 3);
+    }
+
+    /// As many pieces as holes: each colour has all holes once, not each piece.
+    #[test]
+    fn what_is_subtracted_stays_one_list() {
+        let at = |i: i32, y: f64| DVec3::new(f64::from(i), y, 0.0);
+        let piece = |i: i32| {
+            let alpha = if i == 0 { 1.0 } else { 0.5 };
+            Solid::cuboid(DVec3::splat(0.5))
+                .colored(Color { rgba: [0.0, 0.0, 1.0, alpha] })
+                .translated(at(i, 0.0))
+        };
+        let hole = |i: i32| Solid::ball(0.1).translated(at(i, 0.25));
+        let pieces = Solid::boolean(Op::Union, (0..1000).map(piece));
+        let all = std::iter::once(pieces).chain((0..1000).map(hole));
+        let solid = Solid::boolean(Op::Difference, all);
+        let blue = Color { rgba: [0.0, 0.0, 1.0, 0.5] };
+        let layers = Layers::new(solid, &[blue], Marks::default());
+        assert_eq!(layers.opaque.census().leaves, 1001);
+        assert_eq!(layers.translucent[0].0.census().leaves, 1999);
     }
 }

@@ -30,7 +30,7 @@ use super::watch::watch;
 use super::{Answer, Global};
 use cut::Cut;
 use draw::{Drawing, Format, Kind};
-use layers::{Layers, MOST, has_glass};
+use layers::{Layers, MOST, glass};
 use numbers::joined;
 use target::Target;
 use view::ViewArgs;
@@ -64,11 +64,11 @@ pub(super) struct Render {
     /// Where light comes from
     #[arg(long, value_enum, default_value_t = LightArg::Plain, help_heading = "Looks")]
     light: LightArg,
-    /// How many rays soft light takes for each ray from the eye
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Looks")]
+    /// How many rays soft light takes for each ray from the eye: with few, shadows have steps
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=65536), help_heading = "Looks")]
     light_rays: u32,
-    /// How many bits a pixel of depths or thicknesses has in a .png: 16 are grey, and their comment says
-    /// what they mean
+    /// How many bits a pixel of depths or thicknesses has in a .png: 16 are grey, and the comment in the
+    /// file says what they mean in this picture
     #[arg(long, value_enum, default_value_t = BitsArg::Eight, help_heading = "Looks")]
     bits: BitsArg,
     /// Draw dark lines along outlines, steps and creases
@@ -77,9 +77,9 @@ pub(super) struct Render {
     /// The colours of what has none, as OpenSCAD's schemes have them
     #[arg(long, value_name = "SCHEME", value_parser = PossibleValuesParser::new(Scheme::ALL.map(|(name, _)| name)), ignore_case = true, default_value = Scheme::ALL[0].0, help_heading = "Looks")]
     colorscheme: String,
-    /// Show only the model, not what % and # mark
+    /// Draw all colours opaque, and not what % and # mark, as all looks but `shaded` do
     #[arg(long, help_heading = "Looks")]
-    unmarked: bool,
+    opaque: bool,
     /// Draw again whenever the file changes, or a model or drawing in its folder, until Ctrl-C
     #[arg(long)]
     watch: bool,
@@ -132,7 +132,7 @@ struct Report {
     /// The objects that are told apart by their colours.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     objects: Vec<ObjectJson>,
-    /// The largest thickness in any pixel, or the least and the largest depth.
+    /// The least and the largest of the numbers that were found, in all pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
     range: Option<[f32; 2]>,
     seconds: Seconds,
@@ -198,8 +198,8 @@ impl Render {
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
         let start = Instant::now();
-        let with_marks = self.look == LookArg::Shaded && !self.unmarked;
-        let model = match with_marks {
+        let is_seen_through = self.look == LookArg::Shaded && !self.opaque;
+        let model = match is_seen_through {
             true => self.reading.read_marked(&self.file, global)?,
             false => self.reading.read(&self.file, global)?,
         };
@@ -216,8 +216,9 @@ impl Render {
             | LookArg::Thickness => model.solid,
         };
         let whole = self.compile(&solid)?;
-        let has_glass = self.look == LookArg::Shaded && has_glass(&whole);
-        let layers = Layers::new(solid, has_glass, model.marks);
+        warn_if_empty(&self.file, &whole, global);
+        let glass = if is_seen_through { glass(&whole) } else { Vec::new() };
+        let layers = Layers::new(solid, &glass, model.marks);
         if layers.too_many > 0 && !global.quiet {
             super::report::note(&format!(
                 "warning: {}: {MOST} colours are seen through, {} more are drawn as if they were opaque",
@@ -225,10 +226,9 @@ impl Render {
                 layers.too_many
             ));
         }
-        let opaque = if has_glass { self.compile(&layers.opaque)? } else { whole };
+        let opaque = if glass.is_empty() { whole } else { self.compile(&layers.opaque)? };
         let compile = |solid: &Solid| self.compile(solid);
         let mut scenes = Scenes::new(opaque, &layers, compile)?;
-        warn_if_empty(&self.file, &scenes.opaque, global);
         let camera = self.view.camera.camera(&scenes.bounds());
         if self.is_cut() {
             let view = camera.view(self.view.imgsize, &scenes.bounds());

@@ -27,7 +27,7 @@ pub(in super::super) struct CameraArgs {
     #[arg(long, value_name = "NUMBERS", value_parser = camera, help_heading = "View")]
     camera: Option<Camera>,
     /// o or orthogonal: parallel rays; p or perspective: rays from the eye
-    #[arg(long, value_name = "o|p", value_parser = projection, default_value = "p", hide_default_value = true, help_heading = "View")]
+    #[arg(long, value_name = "o|p", value_parser = projection, default_value = "p", help_heading = "View")]
     projection: Projection,
     /// Choose the distance so that everything is in view [default without --camera]
     #[arg(long, help_heading = "View")]
@@ -39,6 +39,8 @@ pub(in super::super) struct CameraArgs {
 
 /// The largest picture, in pixels.
 const MOST_PIXELS: u64 = 1 << 28;
+/// The widest or highest one: bands are whole tiles high, and scales as high as the picture.
+const MOST_ACROSS: u32 = 1 << 16;
 
 impl CameraArgs {
     /// The camera that was asked for, or one that shows everything.
@@ -66,6 +68,11 @@ fn size(text: &str) -> Result<[u32; 2], String> {
         text.split([',', 'x']).map(|n| n.trim().parse()).collect();
     match parts.as_deref() {
         Ok(&[w, h]) if w > 0 && h > 0 => {
+            if w.max(h) > MOST_ACROSS {
+                return Err(format!(
+                    "{w} × {h} is more than {MOST_ACROSS} pixels across"
+                ));
+            }
             if u64::from(w) * u64::from(h) > MOST_PIXELS {
                 return Err(format!("{w} × {h} is more than {MOST_PIXELS} pixels"));
             }

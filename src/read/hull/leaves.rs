@@ -94,10 +94,14 @@ fn curve(primitive: &Primitive, map: DAffine3) -> Option<Leaf> {
 fn is_polyhedral(solid: &Solid) -> bool {
     let mut open = vec![solid];
     while let Some(solid) = open.pop() {
-        if matches!(
-            solid.kind(),
-            Kind::Primitive(Primitive::Quadric { .. } | Primitive::HalfSpace { .. })
-        ) {
+        let is_polyhedron = match solid.kind() {
+            Kind::Primitive(Primitive::Quadric { .. } | Primitive::HalfSpace { .. }) => {
+                false
+            }
+            Kind::Primitive(Primitive::Cuboid { .. }) => true,
+            Kind::Mesh(_) | Kind::Boolean(_) | Kind::Mapped(_) | Kind::Tagged(_) => true,
+        };
+        if !is_polyhedron {
             return false;
         }
         open.extend(solid.children());

@@ -15,7 +15,7 @@ use super::node::Shape;
 use crate::facets::{self, FacetsError, Fine, Operand};
 use crate::mesh::Mesh;
 use crate::op::Op;
-use crate::shape::Primitive;
+use crate::shape::{Primitive, Profile};
 use crate::solid::{Kind, Solid, Tag};
 
 /// The convex hull of all children. Within another hull these do as they are.
@@ -224,7 +224,17 @@ fn is_convex(mut solid: &Solid) -> bool {
     loop {
         match (solid.kind(), solid.children()) {
             (Kind::Primitive(primitive), _) => {
-                return !matches!(primitive, Primitive::HalfSpace { .. });
+                return match primitive {
+                    Primitive::Cuboid { .. } => true,
+                    Primitive::Quadric { profile, .. } => match profile {
+                        Profile::Ball { .. }
+                        | Profile::Cylinder { .. }
+                        | Profile::Cone { .. }
+                        | Profile::Paraboloid { .. } => true,
+                        Profile::OneSheet { .. } | Profile::TwoSheets { .. } => false,
+                    },
+                    Primitive::HalfSpace { .. } => false,
+                };
             }
             (Kind::Mesh(_), _) => return false,
             (_, [only]) => solid = only,

@@ -73,13 +73,22 @@ impl Reading<'_> {
 
     /// What is to be as it was once a statement after `%` is made.
     pub(super) fn set_aside(&mut self, statement: usize) -> Aside {
-        let left_out = self.left_out.take();
-        Aside { statement, counts: self.model.counts, left_out }
+        Aside {
+            statement,
+            counts: self.model.counts,
+            facets: self.facets,
+            budget: self.budget,
+            asked: self.asked.len(),
+            left_out: self.left_out.take(),
+        }
     }
 
-    pub(super) fn put_back(&mut self, Aside { counts, left_out, .. }: Aside) {
-        self.model.counts = counts;
-        self.left_out = left_out;
+    pub(super) fn put_back(&mut self, aside: Aside) {
+        self.model.counts = aside.counts;
+        self.facets = aside.facets;
+        self.budget = aside.budget;
+        self.asked.truncate(aside.asked);
+        self.left_out = aside.left_out;
         self.is_fine.set(false);
     }
 

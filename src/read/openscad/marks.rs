@@ -5,11 +5,12 @@
 //! shapes are not shown.
 
 use super::super::error::Located;
+use super::super::load::Budget;
 use super::super::model::{Counts, Marks};
 use super::arguments::Call;
 use super::node::Shape;
 use super::transform;
-use super::value::Modifiers;
+use super::value::Statement;
 use crate::op::Op;
 use crate::solid::Solid;
 
@@ -25,20 +26,36 @@ pub(super) struct Marked {
 pub(super) struct Aside {
     pub(super) statement: usize,
     pub(super) counts: Counts,
+    pub(super) facets: u64,
+    pub(super) budget: Budget,
+    pub(super) asked: usize,
     pub(super) left_out: Option<Located>,
 }
 
 impl Marked {
     /// Adds what is marked in a statement, and its shape if the statement itself is.
-    pub(super) fn add(&mut self, inner: Self, modifiers: Modifiers, shape: &Shape) {
-        self.highlighted.extend(inner.highlighted);
-        self.background.extend(inner.background);
-        let Shape::Solid(solid) = shape else { return };
-        if modifiers.background {
-            self.background.push(solid.clone());
-        } else if modifiers.highlighted {
-            self.highlighted.push(solid.clone());
+    pub(super) fn add(
+        &mut self,
+        mut inner: Self,
+        statement: &Statement<'_>,
+        shape: &Shape,
+    ) {
+        if let Shape::Solid(solid) = shape {
+            if statement.modifiers.background {
+                inner.background.push(solid.clone());
+            } else if statement.modifiers.highlighted {
+                // All of it is shown already where nothing is taken away.
+                if matches!(
+                    statement.name,
+                    "group" | "union" | "color" | "render" | "multmatrix"
+                ) {
+                    inner.highlighted.clear();
+                }
+                inner.highlighted.push(solid.clone());
+            }
         }
+        append(&mut self.highlighted, inner.highlighted);
+        append(&mut self.background, inner.background);
     }
 
     /// Moves everything with the children of a `multmatrix`.
@@ -58,6 +75,15 @@ impl Marked {
 
     pub(super) fn into_marks(self) -> Marks {
         Marks { highlighted: union(self.highlighted), background: union(self.background) }
+    }
+}
+
+/// Adds solids to others, without moving many into nothing.
+fn append(solids: &mut Vec<Solid>, mut more: Vec<Solid>) {
+    if solids.is_empty() {
+        *solids = more;
+    } else {
+        solids.append(&mut more);
     }
 }
 

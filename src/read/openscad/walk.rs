@@ -146,15 +146,15 @@ impl Walk<'_> {
         inner: Marked,
         reading: &mut Reading<'_>,
     ) {
-        let modifiers = self.document.statements[index].modifiers;
+        let statement = &self.document.statements[index];
         let (children, marked) = match self.open.last_mut() {
             Some(frame) => (&mut frame.children, &mut frame.marked),
             None => (&mut self.outermost, &mut self.marked),
         };
         if reading.options.marks {
-            marked.add(inner, modifiers, &shape);
+            marked.add(inner, statement, &shape);
         }
-        if !modifiers.background {
+        if !statement.modifiers.background {
             children.push(shape);
         } else if let Some(aside) = reading.aside.take_if(|a| a.statement == index) {
             reading.put_back(aside);
