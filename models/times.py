@@ -54,7 +54,7 @@ def main():
             theirs = best(["xvfb-run", "-a", "openscad", "--render", "--imgsize=1024,768",
                            "-o", picture, model])
             shown = f"over {LIMIT}" if theirs is None else f"{theirs:.2f}"
-            ratio = "" if theirs is None else f"{theirs / ours:.0f}×"
+            ratio = "" if theirs is None else f"{theirs / ours:.{int(theirs < 3 * ours)}f}×"
             print(f"| {name} | {ours:.3f} | {shown} | {ratio} |", flush=True)
 
 

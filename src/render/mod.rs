@@ -11,8 +11,8 @@
 //! # Adding a look
 //!
 //! In `look.rs` a variant of `Look`, its place in `Look::ALL`, and an arm each in
-//! `Look::paint` and `Look::background`; in the command line's `render.rs` a value of
-//! `LookArg` and its arm. What colours alone can show, as `--look object` does, is only in the
+//! `Look::paint` and `Look::background`; in the command line's `render/mod.rs` a value
+//! of `LookArg` and its arms. What colours alone can show, as `--look object` does, is only in the
 //! latter: it colours the solid.
 
 mod camera;

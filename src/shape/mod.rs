@@ -2,12 +2,27 @@
 //!
 //! # To add a primitive
 //!
+//! Ask first whether it is a combination of those there are. Then a maker in `solid.rs` is all that
+//! it takes, and a keyword in the reader if a format has one: a capsule is a cylinder and two balls, a
+//! wedge a box and a half-space.
+//!
+//! A surface of revolution of the second degree is a `Profile`: its equation and its name in
+//! `primitive.rs`, its maker in `solid.rs`, and the arms that the compiler asks for, in `wall.rs` and
+//! `quadric.rs` for rays, elsewhere for volumes, facets and digits.
+//!
+//! A leaf with a surface of another kind:
+//!
 //! 1. describe it in [`Primitive`] (`primitive.rs`), with its name and the check of its sizes;
 //! 2. write its file here, with the methods of `Surface`, where lines are inside, and its
 //!    bounds;
-//! 3. add it to `Shape` and the matches below;
-//! 4. give it a maker in `solid.rs`;
-//! 5. and a keyword in the reader, if a format has one.
+//! 3. add it to `Shape` and the matches below, and give it a maker in `solid.rs`;
+//! 4. answer the compiler. It asks, of a `Shape`, how regions, points and the machine's vectors see it
+//!    (`region.rs`, `point.rs`, `scene/beam/block.rs`, `scene/beam/meshes.rs`), and of a `Primitive`
+//!    how rounding moves it (`scene/digits.rs`), its volume (`measure/exact/primitive.rs`), its facets
+//!    (`facets/parts.rs`, `facets/replace.rs`) and whether hulls know it (`read/hull/leaves.rs`,
+//!    `read/openscad/convex.rs`); most of them have an answer for what they do not know;
+//! 5. have it tested with all others: a leaf in `tests/support/model.rs`, its faces in
+//!    `tests/oracle/surface.rs`.
 
 mod ahead;
 mod chain;

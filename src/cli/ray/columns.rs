@@ -102,13 +102,15 @@ const COLUMNS: &[Column] = &[
         Cell::Text(r.scene.leaf(r.span.enter.leaf).kind.into())
     }),
     column("kind_out", "", |r| Cell::Text(r.scene.leaf(r.span.exit.leaf).kind.into())),
-    column("part_in", "the name or colour of the leaf's part", |r| {
+    column("part_in", "the name or colour of the leaf, whose surface it is", |r| {
         part(r, &r.span.enter)
     }),
     column("part_out", "", |r| part(r, &r.span.exit)),
-    column("place_in", "line:column of the leaf in its file", |r| {
-        place(r, &r.span.enter)
-    }),
+    column(
+        "place_in",
+        "line:column of the leaf in its file, of a .scad in its .csg",
+        |r| place(r, &r.span.enter),
+    ),
     column("place_out", "", |r| place(r, &r.span.exit)),
 ];
 
