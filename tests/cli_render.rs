@@ -148,6 +148,11 @@ fn marks_and_glass_are_seen_through() {
     assert!(count(&alone, |p| p != [255, 255, 229]) > 500);
     assert!(desk.run(&["volume", "alone.csg"]).out.starts_with('0'));
 
+    desk.put("beside.csg", "cube(2); %sphere(1e300);");
+    let done =
+        desk.run(&["render", "beside.csg", "-o", "beside.png", "--imgsize", "80,60"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(done.err.contains("is left out"), "{}", done.err);
     desk.put("glass.csg", "color([0, 0, 1, 0.5]) { cube(10); }");
     let done =
         desk.run(&["render", "glass.csg", "-o", "glass.png", "--imgsize", "80,60"]);

@@ -21,7 +21,7 @@ fn step(most: f32) -> f32 {
 }
 
 /// A number in four digits.
-pub(super) fn short(number: f32) -> String {
+pub(super) fn short(number: f64) -> String {
     if number == 0.0 {
         return "0".to_owned();
     }
@@ -57,7 +57,11 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let texts = [0.0, 2.0, 0.125, 12.345_67, 123_456.7, 1.5e-5, 2e9].map(short);
-        assert_eq!(texts, ["0", "2", "0.125", "12.35", "123457", "1.50e-5", "2.00e9"]);
+        let texts =
+            [0.0, 2.0, 0.125, 12.345_67, 123_456.7, 1.5e-5, 2e9, 1e100].map(short);
+        assert_eq!(
+            texts,
+            ["0", "2", "0.125", "12.35", "123457", "1.50e-5", "2.00e9", "1.00e100"]
+        );
     }
 }

@@ -1,5 +1,9 @@
 //! A real browser without a window, and what it makes of a page.
 
+#[expect(dead_code, reason = "it has several names, of which one is enough")]
+#[path = "program.rs"]
+mod program;
+
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -32,8 +36,7 @@ impl Browser {
         reason = "a check left out is not left out in silence"
     )]
     pub(crate) fn installed(without: &str) -> Option<Self> {
-        let runs =
-            |program: &&str| Command::new(program).arg("--version").output().is_ok();
+        let runs = |program: &&str| program::runs(program, "--version");
         let found = NAMES.into_iter().find(runs).map(|program| Self { program });
         if found.is_none() {
             let required = std::env::var_os("SOLIDRAY_REQUIRE_BROWSER").is_some();

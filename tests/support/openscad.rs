@@ -1,5 +1,8 @@
 //! The installed OpenSCAD, and what it makes of files.
 
+#[path = "program.rs"]
+pub(crate) mod program;
+
 use std::path::Path;
 use std::process::Command;
 
@@ -9,18 +12,8 @@ use solidray::{Solid, unwatched};
 
 /// Whether there is one; what is done without it is said. Where it must be there, its absence is
 /// a failure.
-#[expect(clippy::print_stderr, reason = "a check left out is not left out in silence")]
 pub(crate) fn is_installed(without: &str) -> bool {
-    let found = Command::new("openscad").arg("--version").output().is_ok();
-    if !found {
-        let required = std::env::var_os("SOLIDRAY_REQUIRE_OPENSCAD").is_some();
-        assert!(
-            !required,
-            "OpenSCAD is required here, but there is no `openscad` on PATH"
-        );
-        eprintln!("openscad is not installed: {without}");
-    }
-    found
+    program::is_installed("openscad", "--version", "SOLIDRAY_REQUIRE_OPENSCAD", without)
 }
 
 /// The volume that it gives a file; nothing is 0.

@@ -55,7 +55,7 @@ fn legend(pictures: &Pictures) -> String {
             text,
             r#"<span>{label}</span><span class="bar" style="background:linear-gradient(to right,{})" title="at most {}"></span>"#,
             gradient(hue_deg),
-            short(thickest),
+            short(f64::from(thickest)),
         );
     }
     let most = pictures.most;
@@ -64,7 +64,7 @@ fn legend(pictures: &Pictures) -> String {
     let every = if numbers.len() > 6 { 2 } else { 1 };
     let ticks = numbers.into_iter().step_by(every).map(|number| {
         let left = 100.0 * number / most;
-        format!(r#"<span style="left:{left:.2}%">{}</span>"#, short(number))
+        format!(r#"<span style="left:{left:.2}%">{}</span>"#, short(f64::from(number)))
     });
     let ticks: String = ticks.collect();
     let _ = writeln!(text, r#"<span>thickness</span><span class="ticks">{ticks}</span>"#);

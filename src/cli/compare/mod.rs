@@ -54,7 +54,7 @@ pub(super) struct Compare {
     #[arg(long, value_name = "OUT")]
     report: Option<PathBuf>,
     #[command(flatten)]
-    camera: CameraArgs,
+    camera: Typed<CameraArgs>,
     #[command(flatten)]
     sampling: Typed<SamplingArgs>,
     #[command(flatten)]
@@ -95,7 +95,7 @@ impl Compare {
         }
         let why = "reports are written as .html";
         output::check_name(self.report.as_deref(), "html", why)?;
-        if self.report.is_none() && self.camera.is_typed() {
+        if self.report.is_none() && !self.camera.words.is_empty() {
             bail!("only a --report has pictures that a camera could take");
         }
         let reading = &self.reading.meant;
@@ -189,10 +189,9 @@ impl Compare {
             solids,
             options: self.reading.meant.compiling(),
             bounds,
-            camera: if self.camera.is_typed() {
-                self.camera.camera(&bounds)
-            } else {
-                near(&bounds)
+            camera: match &self.camera.meant {
+                camera if camera.is_placed() => camera.camera(&bounds),
+                camera => near(&bounds, camera.projection),
             },
             worst: found.worst.as_ref(),
             tolerance: self.tol,

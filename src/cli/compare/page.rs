@@ -11,11 +11,12 @@ use solidray::Aabb;
 use solidray::measure::{Comparison, Sampling, Verdict, Worst};
 
 use super::super::output::number;
+use super::super::ticks::short;
 use super::commands::Command;
 use super::figures::figures;
 use super::measures;
 use super::pictures::Pictures;
-use super::words::{PERCENT, last_name, name, percent, place, rounded};
+use super::words::{PERCENT, last_name, name, percent, place};
 use super::{only_in, verdict_name};
 
 /// All that a report says.
@@ -86,7 +87,7 @@ impl Page<'_> {
             let is_ringed =
                 self.pictures.is_some_and(|pictures| pictures.worst.is_some());
             let ringed = if is_ringed { ", ringed in the pictures" } else { "" };
-            let length = rounded(worst.length);
+            let length = short(worst.length);
             let middle = self.place(worst.from.midpoint(worst.to));
             let _ = writeln!(
                 text,
@@ -132,7 +133,7 @@ impl Page<'_> {
             false => {
                 format!(
                     "at most {}{PERCENT}",
-                    rounded(100.0 * part(difference.interval[1]))
+                    short(100.0 * part(difference.interval[1]))
                 )
             }
         };
@@ -201,7 +202,7 @@ impl Page<'_> {
         if bounds.is_empty() {
             return "empty".to_owned();
         }
-        let [x, y, z] = bounds.size().to_array().map(rounded);
+        let [x, y, z] = bounds.size().to_array().map(short);
         let [from, to] = [bounds.min, bounds.max].map(|corner| self.place(corner));
         format!("within {x} × {y} × {z}, from {from} to {to}")
     }

@@ -118,7 +118,9 @@ fn colored(models: [&RgbImage; 2], [in_a, in_b]: &[Vec<f32>; 2], most: f32) -> R
         #[expect(clippy::cast_possible_truncation, reason = "between 0 and 255")]
         #[expect(clippy::cast_sign_loss, reason = "between 0 and 255")]
         let over = |byte: u8| (f32::from(byte) * pale).round() as u8;
-        pixel.0 = tint(hue_deg, thickness / most).map(over);
+        // What is too long for a number that colours are made of is the longest there is.
+        let share = if thickness.is_finite() { thickness / most } else { 1.0 };
+        pixel.0 = tint(hue_deg, share).map(over);
     }
     image
 }

@@ -21,10 +21,14 @@ pub(super) fn file(path: &Path) -> OsString {
 /// One word, in quotes if a shell would see more in it than its letters.
 fn quoted(word: &OsStr) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+@%".contains(c);
-    match word.to_str() {
-        Some(text) if !text.is_empty() && text.chars().all(is_plain) => text.to_owned(),
+    let is_plain = |text: &str| !text.starts_with('=') && text.chars().all(is_plain);
+    // What acts on a terminal, or turns the line around, is not shown as it is. A shell takes away
+    // ends of lines behind what it is told in numbers.
+    let acts = |c: char| (c.is_control() && c != '\n') || is_bidirectional(c);
+    match word.to_str().filter(|text| !text.contains(acts) || text.ends_with('\n')) {
+        Some(text) if !text.is_empty() && is_plain(text) => text.to_owned(),
         Some(text) => format!("'{}'", text.replace('\'', r"'\''")),
-        // Bytes that are no text cannot be shown, but they can be said.
+        // Bytes that are no text cannot be shown either, but they can be said.
         None => {
             let mut octal = String::new();
             for byte in word.as_encoded_bytes() {
@@ -35,16 +39,22 @@ fn quoted(word: &OsStr) -> String {
     }
 }
 
+/// Whether a character says in which direction text runs (Unicode Standard Annex 9, §2).
+fn is_bidirectional(c: char) -> bool {
+    matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn words_are_quoted_where_they_must_be() {
-        let words = ["solidray", "a.csg", "b c", "it's", "$(x)", "", "x=1,-2", "~", "ü"];
+        let words =
+            ["solidray", "a.csg", "b c", "it's", "$(x)", "", "x=1,-2", "~", "ü", "=ls"];
         assert_eq!(
             line(words.map(OsStr::new)),
-            r"solidray a.csg 'b c' 'it'\''s' '$(x)' '' x=1,-2 '~' 'ü'"
+            r"solidray a.csg 'b c' 'it'\''s' '$(x)' '' x=1,-2 '~' 'ü' '=ls'"
         );
     }
 

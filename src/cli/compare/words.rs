@@ -5,8 +5,6 @@ use std::path::Path;
 use glam::DVec3;
 use quick_xml::escape::escape;
 
-use super::super::ticks::short;
-
 /// A sign that stays on the line of its number.
 pub(super) const PERCENT: &str = "\u{a0}%";
 
@@ -29,13 +27,6 @@ pub(super) fn last_name(file: &Path) -> String {
     escape(last.to_string_lossy()).into_owned()
 }
 
-/// A number in four digits.
-pub(super) fn rounded(number: f64) -> String {
-    #[expect(clippy::cast_possible_truncation, reason = "four digits are shown")]
-    let number = number as f32;
-    short(number)
-}
-
 /// A fraction in percent, with all its digits but those that the factor has made.
 pub(super) fn percent(fraction: f64) -> String {
     let percent = 100.0 * fraction;
@@ -49,6 +40,9 @@ pub(super) fn place(point: DVec3, size: f64) -> String {
     #[expect(clippy::cast_sign_loss, reason = "between 0 and 12")]
     let decimals = (5.0 - size.log10().floor()).clamp(0.0, 12.0) as usize;
     let coordinate = |x: f64| {
+        if !(1e-6..1e9).contains(&size) {
+            return if x == 0.0 { "0".to_owned() } else { format!("{x:.6e}") };
+        }
         let text = format!("{x:.decimals$}");
         match text.contains('.') {
             true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
@@ -68,7 +62,9 @@ mod tests {
         let point = DVec3::new(1.0 / 3.0, -20.0, 1e-9);
         assert_eq!(place(point, 100.0), "(0.333, -20, 0)");
         assert_eq!(place(point, 2e-6), "(0.33333333333, -20, 0.000000001)");
-        assert_eq!(place(point, 1e9), "(0, -20, 0)");
+        assert_eq!(place(point, 0.9e9), "(0, -20, 0)");
+        let far = DVec3::new(1e39 / 3.0, 0.0, -2e-40);
+        assert_eq!(place(far, 1e39), "(3.333333e38, 0, -2.000000e-40)");
     }
 
     #[test]

@@ -19,6 +19,8 @@ pub(super) const MOST: usize = 32;
 pub(super) struct Layers {
     pub(super) opaque: Solid,
     pub(super) translucent: Vec<(Solid, Color)>,
+    /// What is no part of the model.
+    pub(super) marks: Vec<(Solid, Color)>,
     /// How many colours are drawn as if they were opaque, because there are too many.
     pub(super) too_many: usize,
 }
@@ -27,7 +29,12 @@ impl Layers {
     /// A solid with what is marked in its model, and with its colours taken apart that are seen
     /// through. What has one colour is seen as one; what is without any opacity is not seen.
     pub(super) fn new(solid: Solid, glass: &[Color], marks: Marks) -> Self {
-        let mut layers = Self { opaque: solid, translucent: Vec::new(), too_many: 0 };
+        let mut layers = Self {
+            opaque: solid,
+            translucent: Vec::new(),
+            marks: Vec::new(),
+            too_many: 0,
+        };
         if !glass.is_empty() {
             layers.separate(glass);
         }
@@ -35,7 +42,7 @@ impl Layers {
             [(marks.background, BACKGROUND), (marks.highlighted, HIGHLIGHTED)]
         {
             if !is_empty(&solid) {
-                layers.translucent.push((solid, color));
+                layers.marks.push((solid, color));
             }
         }
         layers
@@ -59,9 +66,11 @@ impl Layers {
     /// What becomes of each solid.
     #[must_use]
     pub(super) fn changed(self, change: impl Fn(Solid) -> Solid) -> Self {
-        let Self { opaque, translucent, too_many } = self;
-        let translucent = translucent.into_iter().map(|(s, color)| (change(s), color));
-        Self { opaque: change(opaque), translucent: translucent.collect(), too_many }
+        let Self { opaque, translucent, marks, too_many } = self;
+        let [translucent, marks] = [translucent, marks].map(|layers| {
+            layers.into_iter().map(|(solid, color)| (change(solid), color)).collect()
+        });
+        Self { opaque: change(opaque), translucent, marks, too_many }
     }
 }
 

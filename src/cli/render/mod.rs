@@ -228,7 +228,13 @@ impl Render {
         }
         let opaque = if glass.is_empty() { whole } else { self.compile(&layers.opaque)? };
         let compile = |solid: &Solid| self.compile(solid);
-        let mut scenes = Scenes::new(opaque, &layers, compile)?;
+        let leave_out = |error| {
+            if !global.quiet {
+                let what = "what `%` or `#` marks is left out";
+                super::report::note(&format!("warning: {error:#}; {what}"));
+            }
+        };
+        let mut scenes = Scenes::new(opaque, &layers, compile, leave_out)?;
         let camera = self.view.camera.camera(&scenes.bounds());
         if self.is_cut() {
             let view = camera.view(self.view.imgsize, &scenes.bounds());
@@ -237,7 +243,8 @@ impl Render {
                 self.cut.iter().fold(solid, |solid, cut| cut.applied(&solid, forward))
             };
             let layers = layers.changed(cut);
-            scenes = Scenes::new(compile(&layers.opaque)?, &layers, compile)?;
+            let opaque = compile(&layers.opaque)?;
+            scenes = Scenes::new(opaque, &layers, compile, |_| ())?;
         } else {
             drop(layers);
         }
@@ -366,14 +373,24 @@ struct Scenes {
 }
 
 impl Scenes {
+    /// Marks that cannot be compiled are no reason not to show the model.
     fn new(
         opaque: Scene,
         layers: &Layers,
         compile: impl Fn(&Solid) -> anyhow::Result<Scene>,
+        leave_out: impl Fn(anyhow::Error),
     ) -> anyhow::Result<Self> {
-        let each = layers.translucent.iter();
-        let translucent = each.map(|(solid, color)| Ok((compile(solid)?, *color)));
-        Ok(Self { opaque, translucent: translucent.collect::<anyhow::Result<_>>()? })
+        let mut translucent = Vec::new();
+        for (solid, color) in &layers.translucent {
+            translucent.push((compile(solid)?, *color));
+        }
+        for (solid, color) in &layers.marks {
+            match compile(solid) {
+                Ok(scene) => translucent.push((scene, *color)),
+                Err(error) => leave_out(error),
+            }
+        }
+        Ok(Self { opaque, translucent })
     }
 
     fn translucent(&self) -> Vec<Translucent<'_>> {

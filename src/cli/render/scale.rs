@@ -49,7 +49,7 @@ pub(super) fn draw_scale(image: &mut RgbImage, most: f32) -> anyhow::Result<()> 
             let up = (bottom - top) as f32 * number / most;
             #[expect(clippy::cast_possible_truncation, reason = "within the picture")]
             let y = bottom - up.round() as i32;
-            let text = short(number);
+            let text = short(f64::from(number));
             let style = (FONT, f64::from(em)).into_font().color(&BLACK);
             let (wide, high) = area.estimate_text_size(&text, &style)?;
             let (wide, high) = (i32::try_from(wide)?, i32::try_from(high)?);

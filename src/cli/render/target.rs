@@ -3,7 +3,7 @@
 use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
+use anyhow::{Context, bail};
 use tempfile::{SpooledTempFile, spooled_tempfile_in};
 
 use super::super::output;
@@ -81,7 +81,7 @@ impl Target {
         out: &mut dyn Write,
     ) -> anyhow::Result<()> {
         let mut file = spooled_tempfile_in(IN_MEMORY, self.folder());
-        make(&mut file)?;
+        make(&mut file).with_context(|| self.name(index).display().to_string())?;
         file.rewind()?;
         if self.is_standard_output() {
             std::io::copy(&mut file, out)?;

@@ -28,7 +28,7 @@ pub(in super::super) struct CameraArgs {
     camera: Option<Camera>,
     /// o or orthogonal: parallel rays; p or perspective: rays from the eye
     #[arg(long, value_name = "o|p", value_parser = projection, default_value = "p", help_heading = "View")]
-    projection: Projection,
+    pub(in super::super) projection: Projection,
     /// Choose the distance so that everything is in view [default without --camera]
     #[arg(long, help_heading = "View")]
     viewall: bool,
@@ -56,10 +56,9 @@ impl CameraArgs {
         camera.with_projection(self.projection)
     }
 
-    /// Whether any of them was asked for.
-    pub(in super::super) fn is_typed(&self) -> bool {
-        let is_other = self.projection != Projection::Perspective;
-        self.camera.is_some() || is_other || self.viewall || self.autocenter
+    /// Whether it was said where the camera stands.
+    pub(in super::super) fn is_placed(&self) -> bool {
+        self.camera.is_some() || self.viewall || self.autocenter
     }
 }
 

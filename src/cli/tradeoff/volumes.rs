@@ -214,7 +214,7 @@ impl Study<'_> {
         })?;
         if trials.is_empty() && !interrupted() {
             notes.push(
-                "adaptive is left out: lattices contradict it, or time was short"
+                "adaptive is left out: it found nothing in its part of the time (see --time-limit), or lattices contradict it"
                     .to_owned(),
             );
         }

@@ -2,7 +2,7 @@
 //!
 //! Maps around it move it, and nothing else does: what is marked within a hull, a sum or
 //! an extrusion is shown as it is there, as OpenSCAD's `CSGTreeEvaluator` has it. Plane
-//! shapes are not shown.
+//! shapes are not shown, nor is what is within nodes that are left to OpenSCAD.
 
 use super::super::error::Located;
 use super::super::load::Budget;
