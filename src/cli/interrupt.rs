@@ -16,6 +16,11 @@ pub(super) fn watch() -> anyhow::Result<()> {
     Ok(())
 }
 
+/// What it was meant for has ended: the next is for what comes now.
+pub(super) fn forget() {
+    INTERRUPTED.store(false, Ordering::Relaxed);
+}
+
 /// Whether there was one.
 pub(super) fn interrupted() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)

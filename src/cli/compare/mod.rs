@@ -25,6 +25,7 @@ use solidray::measure::{self, Comparison, Verdict, Worst};
 use solidray::{Aabb, Solid};
 
 use super::input::Reading;
+use super::interrupt;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, point};
 use super::render::CameraArgs;
@@ -127,6 +128,7 @@ impl Compare {
         if let Some(path) = &self.report {
             // Who asked for numbers has them, whatever becomes of the page.
             out.flush()?;
+            interrupt::forget();
             self.write(path, [&a, &b], bounds, &found, seconds, global)?;
             if !global.quiet {
                 note(&format!("{} is written", path.display()));

@@ -2,12 +2,13 @@
 
 use std::io::Cursor;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use image::{ImageFormat, Rgb, RgbImage};
 use solidray::measure::Worst;
 use solidray::render::{self, Camera, Style, tint};
 use solidray::{Aabb, CompileOptions, Scene, Solid};
 
+use super::super::interrupt::interrupted;
 use super::super::meter::Meter;
 
 /// Width and height of each of them, in pixels.
@@ -61,15 +62,16 @@ impl Task<'_> {
     pub(super) fn pictures(&self, meter: &Meter) -> anyhow::Result<Pictures> {
         let progress = |rays| meter.tick(rays);
         let [a, b] = self.solids;
-        let [of_a, of_b] = [self.scene(a)?, self.scene(b)?]
-            .map(|scene| render::picture(&scene, &self.camera, SIZE, &STYLE, &progress));
-        let only = [
-            self.scene(&(a.clone() - b.clone()))?,
-            self.scene(&(b.clone() - a.clone()))?,
-        ]
-        .map(|scene| {
-            render::thickness(&scene, &self.camera, SIZE, STYLE.samples, &progress)
-        });
+        let picture = |solid| {
+            let scene = self.scene(solid)?;
+            anyhow::Ok(render::picture(&scene, &self.camera, SIZE, &STYLE, &progress))
+        };
+        let thickness = |solid| {
+            let (scene, samples) = (self.scene(&solid)?, STYLE.samples);
+            anyhow::Ok(render::thickness(&scene, &self.camera, SIZE, samples, &progress))
+        };
+        let [of_a, of_b] = [picture(a)?, picture(b)?];
+        let only = [thickness(a.clone() - b.clone())?, thickness(b.clone() - a.clone())?];
         let thickest =
             only.each_ref().map(|all| all.iter().copied().fold(0.0_f32, f32::max));
         // Of a difference that is tolerated if it is everywhere nothing needs to catch the eye.
@@ -90,6 +92,9 @@ impl Task<'_> {
     }
 
     fn scene(&self, solid: &Solid) -> anyhow::Result<Scene> {
+        if interrupted() {
+            bail!("stopped, and no page is written");
+        }
         Ok(Scene::compile_with(solid, &self.options)?)
     }
 
