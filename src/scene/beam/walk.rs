@@ -1,5 +1,7 @@
 //! Along one ray of a block, through few leaves.
 
+use std::cmp::Ordering;
+
 use super::block::Slot;
 
 /// A way through a cell.
@@ -122,6 +124,7 @@ impl<'a> Walk<'a> {
                 0
             }
         };
+        settle(ends);
         let state = logic.start().wrapping_sub(passed);
         Self { logic, slots, ends, next: 0, state, inside: logic.holds(state) }
     }
@@ -184,8 +187,7 @@ pub(super) fn first(
 fn gather(i: u32, slot: &Slot, ray: usize, ends: &mut Ends) {
     let (enter, exit) = (slot.enter[ray], slot.exit[ray]);
     if enter < exit {
-        insert(ends, (enter, 2 * i));
-        insert(ends, (exit, 2 * i + 1));
+        ends.extend([(enter, 2 * i), (exit, 2 * i + 1)]);
     }
 }
 
@@ -217,10 +219,10 @@ fn gather_within(slots: &[Slot], ray: usize, ends: &mut Ends) -> u64 {
             if enter < from {
                 passed += 1;
             } else {
-                insert(ends, (enter, 2 * i));
+                ends.push((enter, 2 * i));
             }
             if exit <= to {
-                insert(ends, (exit, 2 * i + 1));
+                ends.push((exit, 2 * i + 1));
             }
         } else {
             gather(i, slot, ray, ends);
@@ -229,15 +231,48 @@ fn gather_within(slots: &[Slot], ray: usize, ends: &mut Ends) -> u64 {
     passed
 }
 
-/// Adds an end where it belongs. Leaves come about in the order in which rays meet them, so that
-/// is near the end of the list.
+/// Puts ends in the order in which they come, those at one place as they were collected. Leaves come
+/// about in the order in which rays meet them, so that few have far to go; but where very many surfaces
+/// coincide, all that is left has to go past all of what is entered.
 #[inline]
-fn insert(ends: &mut Ends, end: (f64, u32)) {
-    let mut place = ends.len();
-    ends.push(end);
-    while place > 0 && ends[place - 1].0 > end.0 {
-        ends[place] = ends[place - 1];
-        place -= 1;
+fn settle(ends: &mut Ends) {
+    /// As many ends are put in order by hand in the time that a sort takes to begin.
+    const BY_HAND: usize = 64;
+    if ends.len() > BY_HAND {
+        ends.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(Ordering::Equal));
+        return;
     }
-    ends[place] = end;
+    for i in 1..ends.len() {
+        let end = ends[i];
+        let mut place = i;
+        while place > 0 && ends[place - 1].0 > end.0 {
+            ends[place] = ends[place - 1];
+            place -= 1;
+        }
+        ends[place] = end;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_come_in_order_and_equal_ones_as_they_were_collected() {
+        for count in [0_u32, 1, 2, 63, 64, 65, 66, 1000] {
+            // Places that repeat, and two zeros that are one place.
+            let place = |i: u32| match i.wrapping_mul(2_654_435_761) >> 28 {
+                0 if i % 2 == 0 => -0.0,
+                place => f64::from(place),
+            };
+            let mut ends: Ends = (0..count).map(|i| (place(i), i)).collect();
+            settle(&mut ends);
+            assert_eq!(ends.len(), count as usize);
+            let is_before = |pair: &[(f64, u32)]| {
+                let [(a, i), (b, j)] = pair else { return false };
+                a < b || (a == b && i < j)
+            };
+            assert!(ends.windows(2).all(is_before), "{count}");
+        }
+    }
 }
