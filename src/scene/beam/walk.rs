@@ -262,7 +262,7 @@ mod tests {
         for count in [0_u32, 1, 2, 63, 64, 65, 66, 1000] {
             // Places that repeat, and two zeros that are one place.
             let place = |i: u32| match i.wrapping_mul(2_654_435_761) >> 28 {
-                0 if i % 2 == 0 => -0.0,
+                0 if i.is_multiple_of(2) => -0.0,
                 place => f64::from(place),
             };
             let mut ends: Ends = (0..count).map(|i| (place(i), i)).collect();
@@ -270,7 +270,7 @@ mod tests {
             assert_eq!(ends.len(), count as usize);
             let is_before = |pair: &[(f64, u32)]| {
                 let [(a, i), (b, j)] = pair else { return false };
-                a < b || (a == b && i < j)
+                a < b || (a <= b && i < j)
             };
             assert!(ends.windows(2).all(is_before), "{count}");
         }
