@@ -16,13 +16,14 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use support::model::{Leaf, Model};
+use support::leaf::{self, Leaf};
+use support::model::Model;
 use support::scene;
-use support::strategies::{Aim, aims, bounded_leaf, map, op};
+use support::strategies::{Aim, aims, map, op};
 
 /// A leaf without triangles.
 fn smooth_leaf() -> impl Strategy<Value = Leaf> {
-    bounded_leaf().prop_filter("meshes are for whole numbers", |leaf| {
+    leaf::bounded().prop_filter("meshes are for whole numbers", |leaf| {
         !matches!(leaf, Leaf::Mesh(_))
     })
 }

@@ -15,7 +15,8 @@ use oracle::real::Real;
 use proptest::prelude::ProptestConfig;
 use solidray::{Crossing, Ray, Scene};
 use support::dice::Dice;
-use support::model::{Leaf, Model};
+use support::leaf::{self, Leaf};
+use support::model::Model;
 use support::{scene, spans};
 
 /// 10 to a power from `low` to `high`.
@@ -25,18 +26,8 @@ fn power(dice: &mut Dice, low: f64, high: f64) -> f64 {
 
 fn leaf(dice: &mut Dice) -> Leaf {
     let size = power(dice, -2.0, 2.0);
-    let mut length = || size * dice.within(0.2, 2.0);
-    let (a, b, c) = (length(), length(), length());
-    match dice.below(8) {
-        0 => Leaf::Cuboid { min: -dvec3(a, b, c), max: dvec3(c, a, b) },
-        1 => Leaf::Ball { radius: a },
-        2 => Leaf::Cylinder { radius: a, height: b },
-        3 => Leaf::Frustum { bottom: a, top: b, height: c },
-        4 => Leaf::Frustum { bottom: a, top: 0.0, height: b },
-        5 => Leaf::Paraboloid { radius: a, height: b },
-        6 => Leaf::OneSheet { waist: a, radius: a + b, height: c },
-        _ => Leaf::TwoSheets { vertex: a, slope: b / c, height: 2.0 * (a + b) },
-    }
+    let lengths = [(); 3].map(|()| size * dice.within(0.2, 2.0));
+    leaf::of_lengths(dice, lengths)
 }
 
 /// How a leaf is placed: turned, and then one of several extremes.

@@ -19,7 +19,8 @@ use proptest::prelude::*;
 use solidray::{Mesh, Op, Ray};
 use support::algebra::{equal_pairs, in_common_frame, union};
 use support::dice::Dice;
-use support::model::{Leaf, Model, Shared};
+use support::leaf::{Leaf, Shared};
+use support::model::Model;
 use support::strategies::{op, symmetry};
 use support::{ends_in, meshes, scene};
 

@@ -10,7 +10,8 @@ use glam::{DAffine3, DVec3};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use solidray::{Op, Ray, Scene};
-use support::model::{Leaf, Model, Shared};
+use support::leaf::{Leaf, Shared};
+use support::model::Model;
 use support::strategies::{op, symmetry};
 use support::{ends_in, meshes, scene};
 

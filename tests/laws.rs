@@ -12,7 +12,8 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use solidray::{Crossing, Membership, Ray, Scene, Span};
 use support::algebra::{FAR, and, cube, equal_pairs, in_common_frame, minus, or, union};
-use support::model::{Leaf, Model, crossings_of_leaves};
+use support::leaf::Leaf;
+use support::model::{Model, crossings_of_leaves};
 use support::strategies::{Aim, aims, direction, map, model, place, placed_leaf};
 use support::{covers, ends_in, scene, spans};
 

@@ -14,8 +14,9 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, TestRunner};
 use solidray::measure::{self, Estimate, Method, Sampling};
 use solidray::{Op, Scene, Solid, unwatched};
-use support::model::{Leaf, Model};
-use support::strategies::{self, bounded_leaf, map};
+use support::leaf::{self, Leaf};
+use support::model::Model;
+use support::strategies::{self, map};
 use support::{meshes, scene};
 
 fn sampling(rel_tol: f64, max_rays: u64) -> Sampling {
@@ -153,7 +154,7 @@ proptest! {
 
     /// Formulas against certain bounds, under maps that turn, stretch and shear.
     #[test]
-    fn formulas_are_within_brackets(leaf in bounded_leaf(), map in map()) {
+    fn formulas_are_within_brackets(leaf in leaf::bounded(), map in map()) {
         let model = Model::Leaf(leaf).mapped(map);
         let solid = model.solid();
         if let Some(found) = measure::exact(&solid) {

@@ -11,7 +11,8 @@ use oracle::placed::{Placed, U};
 use oracle::real::Real;
 use solidray::{Ray, Scene, Sense};
 use support::dice::Dice;
-use support::model::{Leaf, Model};
+use support::leaf::{self, Leaf};
+use support::model::Model;
 use support::{ends_in, scene, spans};
 
 /// A leaf both ways.
@@ -159,18 +160,8 @@ fn n05_a_cone_is_exact_to_1e_15_at_1e_12_from_its_apex_and_even_through_it() {
 
 /// A leaf of any kind.
 fn leaf(dice: &mut Dice) -> Leaf {
-    let mut length = || dice.within(0.2, 2.0);
-    let (a, b, c) = (length(), length(), length());
-    match dice.below(8) {
-        0 => Leaf::Cuboid { min: -dvec3(a, b, c), max: dvec3(c, a, b) },
-        1 => Leaf::Ball { radius: a },
-        2 => Leaf::Cylinder { radius: a, height: b },
-        3 => Leaf::Frustum { bottom: a, top: b, height: c },
-        4 => Leaf::Frustum { bottom: a, top: 0.0, height: b },
-        5 => Leaf::Paraboloid { radius: a, height: b },
-        6 => Leaf::OneSheet { waist: a, radius: a + b, height: c },
-        _ => Leaf::TwoSheets { vertex: a, slope: b / c, height: 2.0 * (a + b) },
-    }
+    let lengths = [(); 3].map(|()| dice.within(0.2, 2.0));
+    leaf::of_lengths(dice, lengths)
 }
 
 /// A turn, a stretch or a shear, another turn and a move.

@@ -11,7 +11,8 @@ use glam::{DAffine3, DVec3};
 use solidray::{Mesh, Ray};
 
 use super::sweep::Passage;
-use crate::support::model::{Leaf, Model};
+use crate::support::leaf::Leaf;
+use crate::support::model::Model;
 
 /// A point or a direction.
 type Whole = [i64; 3];
@@ -98,25 +99,14 @@ impl Lattice {
 
 impl Shape {
     fn new(leaf: &Leaf, map: &DAffine3) -> Self {
-        match leaf {
-            Leaf::Cuboid { min, max } => Self::Convex(
-                DVec3::AXES
-                    .into_iter()
-                    .flat_map(|axis| [(-axis, -axis.dot(*min)), (axis, axis.dot(*max))])
-                    .map(|(normal, offset)| Side::new(normal, offset, map))
-                    .collect(),
-            ),
-            Leaf::HalfSpace { normal, offset } => {
-                Self::Convex(vec![Side::new(*normal, *offset, map)])
-            }
-            Leaf::Mesh(mesh) => Self::Mesh(faces(&mesh.0, map)),
-            Leaf::Ball { .. }
-            | Leaf::Cylinder { .. }
-            | Leaf::Frustum { .. }
-            | Leaf::Paraboloid { .. }
-            | Leaf::OneSheet { .. }
-            | Leaf::TwoSheets { .. } => unreachable!("{leaf:?} has no planes"),
+        if let Leaf::Mesh(mesh) = leaf {
+            return Self::Mesh(faces(&mesh.0, map));
         }
+        assert!(leaf.wall::<f64>().is_none(), "{leaf:?} is not made of planes");
+        let sides = leaf.planes().into_iter();
+        Self::Convex(
+            sides.map(|(normal, offset)| Side::new(normal, offset, map)).collect(),
+        )
     }
 
     fn passage(&self, line: &Line) -> Passage<Fraction> {

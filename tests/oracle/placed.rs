@@ -6,7 +6,8 @@ use solidray::Ray;
 
 use super::real::{Map, Real, Vector};
 use super::surface::{Polynomial, Surface, surfaces};
-use crate::support::model::{Leaf, Model};
+use crate::support::leaf::Leaf;
+use crate::support::model::Model;
 
 /// A leaf under a chain of maps, each taken as exact.
 #[derive(Debug)]

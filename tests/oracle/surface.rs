@@ -1,7 +1,7 @@
 //! Planes and quadrics in numbers of 200 bits.
 
 use super::real::{Real, Vector};
-use crate::support::model::Leaf;
+use crate::support::leaf::{Leaf, Number};
 
 /// The points p of a leaf's frame with `Σ squareᵢ pᵢ² + 2 slope · p + constant ≤ 0`.
 #[derive(Clone, Debug)]
@@ -19,6 +19,12 @@ pub(crate) struct Polynomial {
     pub(crate) a: Real,
     pub(crate) b: Real,
     pub(crate) c: Real,
+}
+
+impl Number for Real {
+    fn of(x: f64) -> Self {
+        Self::exact(x)
+    }
 }
 
 fn exact(x: f64) -> Real {
@@ -73,54 +79,12 @@ impl Surface {
     }
 }
 
-/// The surfaces of which a leaf is the common inside.
+/// The surfaces of which a leaf is the common inside; meshes are compared with whole numbers.
 pub(crate) fn surfaces(leaf: &Leaf) -> Vec<Surface> {
-    let zero = || exact(0.0);
-    let square = |x: f64| exact(x).squared();
-    match *leaf {
-        Leaf::Cuboid { min, max } => (0..3)
-            .flat_map(|axis| {
-                let mut normal = [0.0; 3];
-                normal[axis] = 1.0;
-                let above = Surface::plane(normal.map(|x| -x), -min[axis]);
-                [above, Surface::plane(normal, max[axis])]
-            })
-            .collect(),
-        Leaf::HalfSpace { normal, offset } => {
-            vec![Surface::plane(normal.to_array(), offset)]
-        }
-        Leaf::Ball { radius } => {
-            vec![Surface::revolved([exact(-1.0), zero(), square(radius)])]
-        }
-        Leaf::Cylinder { radius, height } => {
-            cut(Surface::revolved([zero(), zero(), square(radius)]), [0.0, height])
-        }
-        Leaf::Frustum { bottom, top, height } => {
-            let slope = (exact(top) - exact(bottom)) / exact(height);
-            let wall = [slope.squared(), exact(bottom) * &slope, square(bottom)];
-            cut(Surface::revolved(wall), [0.0, height])
-        }
-        Leaf::Paraboloid { radius, height } => {
-            let growth = square(radius) / (exact(2.0) * exact(height));
-            cut(Surface::revolved([zero(), growth, zero()]), [0.0, height])
-        }
-        Leaf::OneSheet { waist, radius, height } => {
-            let half = exact(0.5 * height);
-            let growth = (square(radius) - square(waist)) / half.squared();
-            let wall = Surface::revolved([growth, zero(), square(waist)]);
-            cut(wall, [-0.5 * height, 0.5 * height])
-        }
-        Leaf::TwoSheets { vertex, slope, height } => {
-            let least = -(square(slope) * square(vertex));
-            let wall = Surface::revolved([square(slope), zero(), least]);
-            cut(wall, [-0.5 * height, 0.5 * height])
-        }
-        Leaf::Mesh(_) => unreachable!("meshes are compared with whole numbers"),
-    }
-}
-
-/// A wall between two heights.
-fn cut(wall: Surface, [bottom, top]: [f64; 2]) -> Vec<Surface> {
-    let above = Surface::plane([0.0, 0.0, -1.0], -bottom);
-    vec![wall, above, Surface::plane([0.0, 0.0, 1.0], top)]
+    let wall = leaf.wall().map(Surface::revolved);
+    let planes = leaf.planes().into_iter();
+    let planes = planes.map(|(normal, offset)| Surface::plane(normal.to_array(), offset));
+    let all: Vec<Surface> = wall.into_iter().chain(planes).collect();
+    assert!(!all.is_empty(), "{leaf:?} has no equations");
+    all
 }

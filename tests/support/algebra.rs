@@ -3,7 +3,8 @@
 use glam::DVec3;
 use solidray::{Op, Scene};
 
-use super::model::{Leaf, Model};
+use super::leaf::Leaf;
+use super::model::Model;
 use super::scene;
 
 pub(crate) fn union(children: impl IntoIterator<Item = Model>) -> Model {

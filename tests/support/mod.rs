@@ -5,6 +5,7 @@
 pub(crate) mod aim;
 pub(crate) mod algebra;
 pub(crate) mod dice;
+pub(crate) mod leaf;
 pub(crate) mod meshes;
 pub(crate) mod model;
 pub(crate) mod nearness;

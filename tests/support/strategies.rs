@@ -1,14 +1,12 @@
 //! What random tests are made of: places, maps, leaves, trees and rays.
 
-use std::sync::Arc;
-
 use glam::{DAffine3, DMat3, DQuat, DVec3, dvec3};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use solidray::{Op, Ray};
 
-use super::meshes;
-use super::model::{Leaf, Model, Shared};
+use super::leaf::{self, Leaf};
+use super::model::Model;
 
 /// A coordinate: half of a small integer, or anything of that size.
 pub(crate) fn coordinate() -> impl Strategy<Value = f64> {
@@ -69,52 +67,10 @@ pub(crate) fn map() -> impl Strategy<Value = DAffine3> {
     })
 }
 
-/// A leaf of any kind that is bounded, in its own frame.
-pub(crate) fn bounded_leaf() -> impl Strategy<Value = Leaf> {
-    prop_oneof![
-        3 => (place(), [length(), length(), length()]).prop_map(|(min, size)| {
-            Leaf::Cuboid { min, max: min + DVec3::from_array(size) }
-        }),
-        2 => length().prop_map(|radius| Leaf::Ball { radius }),
-        1 => (length(), length())
-            .prop_map(|(radius, height)| Leaf::Cylinder { radius, height }),
-        2 => (prop_oneof![Just(0.0), length()], length(), length(), any::<bool>()).prop_map(
-            |(a, b, height, turned)| {
-                let (bottom, top) = if turned { (b, a) } else { (a, b) };
-                Leaf::Frustum { bottom, top, height }
-            }
-        ),
-        1 => (length(), length())
-            .prop_map(|(radius, height)| Leaf::Paraboloid { radius, height }),
-        1 => (length(), 0.0..2.0_f64, length()).prop_map(|(waist, more, height)| {
-            Leaf::OneSheet { waist, radius: waist + more, height }
-        }),
-        1 => (0.2..1.0_f64, 0.3..2.0_f64, length()).prop_map(|(vertex, slope, more)| {
-            Leaf::TwoSheets { vertex, slope, height: 2.0 * (vertex + more) }
-        }),
-        2 => mesh(),
-    ]
-}
-
-fn mesh() -> impl Strategy<Value = Leaf> {
-    let all: Vec<Leaf> = [
-        meshes::tetrahedron(),
-        meshes::octahedron(),
-        meshes::prism(5),
-        meshes::icosphere(1),
-        meshes::jittered(&meshes::icosphere(1), 0.2, 7),
-        meshes::grid_box(-DVec3::ONE, DVec3::ONE, 2),
-    ]
-    .into_iter()
-    .map(|mesh| Leaf::Mesh(Shared(Arc::new(mesh))))
-    .collect();
-    prop::sample::select(all)
-}
-
 /// A bounded leaf under a map, or cut by a half-space.
 pub(crate) fn placed_leaf() -> impl Strategy<Value = Model> {
     let cut = (direction(), coordinate(), any::<bool>());
-    (bounded_leaf(), prop::option::of(map()), prop::option::weighted(0.2, cut)).prop_map(
+    (leaf::bounded(), prop::option::of(map()), prop::option::weighted(0.2, cut)).prop_map(
         |(leaf, map, cut)| {
             let mut model = Model::Leaf(leaf);
             if let Some((normal, offset, subtracted)) = cut {

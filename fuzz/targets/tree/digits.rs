@@ -5,7 +5,8 @@ use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use solidray::{Op, Ray};
 
 use crate::bytes::{Parts, one_in_two, small, symmetry, three};
-use crate::support::model::{Leaf, Model};
+use crate::support::leaf::Leaf;
+use crate::support::model::Model;
 use crate::support::strategies::Aim;
 
 /// A tree and rays at it.

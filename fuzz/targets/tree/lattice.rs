@@ -7,8 +7,9 @@ use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use solidray::{Mesh, Op, Ray};
 
 use crate::bytes::{Parts, one_in_two, small, some, symmetry, three};
+use crate::support::leaf::{Leaf, Shared};
 use crate::support::meshes;
-use crate::support::model::{Leaf, Model, Shared};
+use crate::support::model::Model;
 
 /// A bounded tree and rays at it.
 pub(crate) fn case(bytes: &mut Unstructured) -> Result<(Model, Vec<Ray>)> {

@@ -20,7 +20,8 @@ use oracle::equal::{assert_equal_but_for_slivers, assert_equal_lists};
 use oracle::lattice::Lattice;
 use oracle::placed::placed;
 use solidray::Ray;
-use support::model::{Leaf, Model};
+use support::leaf::Leaf;
+use support::model::Model;
 use support::scene;
 
 /// A tree and what it is asked.

@@ -12,8 +12,9 @@ use crate::op::Op;
 use crate::ray::{Crossing, Span};
 use crate::scene::Scene;
 use crate::solid::Solid;
+use crate::support::leaf::Leaf;
 use crate::support::meshes;
-use crate::support::model::{Leaf, Model};
+use crate::support::model::Model;
 use crate::support::strategies::{
     coordinate, direction, length, model, op, place, placed_leaf,
 };
