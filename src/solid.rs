@@ -10,7 +10,7 @@ use glam::{DAffine3, DVec3};
 use crate::color::Color;
 use crate::mesh::Mesh;
 use crate::op::Op;
-use crate::shape::{Primitive, Profile};
+use crate::primitive::{Cuboid, HalfSpace, Primitive, Profile, Quadric};
 
 /// A solid: cheap to clone, never changed.
 ///
@@ -107,7 +107,7 @@ impl Solid {
 
     /// The box with these two corners.
     pub fn cuboid_between(min: DVec3, max: DVec3) -> Self {
-        Self::primitive(Primitive::Cuboid { min, max })
+        Self::primitive(Primitive::Cuboid(Cuboid { min, max }))
     }
 
     /// The cylinder about the z-axis from z = 0 to `height`.
@@ -171,7 +171,7 @@ impl Solid {
     /// The half-space of points with `normal · p ≤ offset`. It has no bounds, so it is of
     /// use inside an intersection or as what is subtracted.
     pub fn half_space(normal: DVec3, offset: f64) -> Self {
-        Self::primitive(Primitive::HalfSpace { normal, offset })
+        Self::primitive(Primitive::HalfSpace(HalfSpace { normal, offset }))
     }
 
     /// The solid inside a mesh.
@@ -190,7 +190,7 @@ impl Solid {
     }
 
     fn revolved(profile: Profile, bottom: f64, top: f64) -> Self {
-        Self::primitive(Primitive::Quadric { profile, bottom, top })
+        Self::primitive(Primitive::Quadric(Quadric { profile, bottom, top }))
     }
 }
 

@@ -13,6 +13,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, TestRunner};
 use solidray::measure::{self, Estimate, Method, Sampling};
+use solidray::primitive::{Primitive, Profile, Quadric};
 use solidray::{Op, Scene, Solid, unwatched};
 use support::leaf::{self, Leaf};
 use support::model::Model;
@@ -70,11 +71,11 @@ fn textbook() -> Vec<(&'static str, Solid, f64)> {
         ),
         (
             "segment",
-            Solid::primitive(solidray::shape::Primitive::Quadric {
-                profile: solidray::shape::Profile::Ball { radius: 1.0 },
+            Solid::primitive(Primitive::Quadric(Quadric {
+                profile: Profile::Ball { radius: 1.0 },
                 bottom: 0.25,
                 top: 1.0,
-            }),
+            })),
             cap(0.75),
         ),
         ("mesh", tilted(Solid::mesh(meshes::grid_box(-DVec3::ONE, DVec3::ONE, 2))), 8.0),

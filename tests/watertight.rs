@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, dvec3};
+use solidray::primitive::{Cuboid, Primitive};
 use solidray::read::{self, Curves, ReadOptions};
-use solidray::shape::Primitive;
 use solidray::{Crossing, Mesh, Ray, Scene, Sense, Solid, Span, View};
 use support::aim::{at_feature, mapped};
 use support::dice::Dice;
@@ -129,7 +129,7 @@ fn skin(solid: &Solid) -> Mesh {
     let mut rest = vec![(solid, DAffine3::IDENTITY)];
     while let Some((solid, map)) = rest.pop() {
         let mesh = match solid.view() {
-            View::Primitive(Primitive::Cuboid { min, max }) => {
+            View::Primitive(Primitive::Cuboid(Cuboid { min, max })) => {
                 &Arc::new(meshes::grid_box(*min, *max, 1))
             }
             View::Mesh(mesh) => mesh,

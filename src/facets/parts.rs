@@ -5,13 +5,12 @@ use std::f64::consts::PI;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::longest::longest;
-use super::replace::{cuboid, radius_at};
 use super::{Faceted, FacetsError, boundary};
 use crate::aabb::Aabb;
 use crate::mesh::{Mesh, MeshError, round};
 use crate::op::Op;
+use crate::primitive::{Cuboid, Describe, Facets};
 use crate::progress::unwatched;
-use crate::shape::{Primitive, Profile};
 use crate::solid::{Kind, Solid};
 
 /// What polyhedra stand for curves.
@@ -126,40 +125,32 @@ impl Making<'_> {
                 self.count(mesh.faces().len() as u64)?;
                 moved(mesh.points().to_vec(), mesh.faces().to_vec(), map)?
             }
-            Kind::Primitive(Primitive::Cuboid { min, max }) => {
-                self.count(12)?;
-                mapped(&cuboid(*min, *max)?, map)?
-            }
-            Kind::Primitive(Primitive::Quadric {
-                profile: Profile::Ball { radius },
-                bottom,
-                top,
-            }) if *bottom <= -radius && *top >= *radius => {
-                let segments = (self.fine.ball)(radius * longest(&map.matrix3));
-                self.count(round::ball_triangles(segments))?;
-                mapped(&ball(segments, *radius)?, map)?
-            }
-            Kind::Primitive(Primitive::Quadric {
-                profile: profile @ (Profile::Cylinder { .. } | Profile::Cone { .. }),
-                bottom,
-                top,
-            }) => {
-                let radii = [*bottom, *top].map(|z| radius_at(profile, z));
-                // Nothing moves along the axis, so it does not matter how that is stretched.
-                let flat = map.matrix3 * DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0));
-                let segments =
-                    (self.fine.circle)(radii[0].max(radii[1]) * longest(&flat));
-                self.count(round::frustum_triangles(segments))?;
-                let radii = radii.map(|r| r * with_area(segments));
-                mapped(&round::frustum(segments, radii, [*bottom, *top])?, map)?
-            }
-            Kind::Primitive(Primitive::HalfSpace { normal, offset }) => {
-                self.count(12)?;
-                return self.half_space(*normal, *offset, map);
-            }
-            Kind::Primitive(primitive @ Primitive::Quadric { .. }) => {
-                return Err(FacetsError::NoFacets(primitive.name()));
-            }
+            Kind::Primitive(primitive) => match primitive.describe().facets() {
+                Facets::Polyhedron { points, faces } => {
+                    self.count(faces.len() as u64)?;
+                    moved(points, faces, map)?
+                }
+                Facets::Ball { radius } => {
+                    let segments = (self.fine.ball)(radius * longest(&map.matrix3));
+                    self.count(round::ball_triangles(segments))?;
+                    mapped(&ball(segments, radius)?, map)?
+                }
+                Facets::Frustum { radii, ends } => {
+                    // Nothing moves along the axis, so it does not matter how that is stretched.
+                    let flat =
+                        map.matrix3 * DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0));
+                    let segments =
+                        (self.fine.circle)(radii[0].max(radii[1]) * longest(&flat));
+                    self.count(round::frustum_triangles(segments))?;
+                    let radii = radii.map(|r| r * with_area(segments));
+                    mapped(&round::frustum(segments, radii, ends)?, map)?
+                }
+                Facets::HalfSpace { normal, offset } => {
+                    self.count(12)?;
+                    return self.half_space(normal, offset, map);
+                }
+                Facets::Unknown => return Err(FacetsError::NoFacets(primitive.name())),
+            },
             Kind::Boolean(_) | Kind::Mapped(_) | Kind::Tagged(_) => return Ok(None),
         };
         Ok(Some(mesh))
@@ -186,7 +177,11 @@ impl Making<'_> {
         let (x, y) = z.any_orthonormal_pair();
         let frame = DAffine3::from_mat3(DMat3::from_cols(x, y, z));
         let corner = DVec3::new(far, far, top);
-        Ok(Some(mapped(&cuboid(-DVec3::splat(2.0 * far), corner)?, &frame)?))
+        let cuboid = Cuboid { min: -DVec3::splat(2.0 * far), max: corner };
+        let Facets::Polyhedron { points, faces } = cuboid.facets() else {
+            return Ok(None);
+        };
+        Ok(Some(moved(points, faces, &frame)?))
     }
 }
 
@@ -231,7 +226,10 @@ pub(super) fn reach(solid: &Solid) -> f64 {
             Kind::Mapped(own) => (map * **own, None),
             Kind::Tagged(_) | Kind::Boolean(_) => (map, None),
             Kind::Mesh(mesh) => (map, Some(mesh.bounds())),
-            Kind::Primitive(primitive) => (map, bounds(primitive)),
+            Kind::Primitive(primitive) => {
+                let around = primitive.describe().extent().mapped(&DAffine3::IDENTITY);
+                (map, Some(around).filter(Aabb::is_bounded))
+            }
         };
         open.extend(children.iter().map(|child| (child, below)));
         if let Some(around) = around {
@@ -242,27 +240,6 @@ pub(super) fn reach(solid: &Solid) -> f64 {
     reach
 }
 
-/// A box around a primitive that has one.
-fn bounds(primitive: &Primitive) -> Option<Aabb> {
-    match primitive {
-        Primitive::Cuboid { min, max } => Some(Aabb::new(*min, *max)),
-        Primitive::Quadric { profile, bottom, top } => {
-            let radius = match profile {
-                Profile::Ball { radius } | Profile::Cylinder { radius } => *radius,
-                profile @ Profile::Cone { .. } => {
-                    radius_at(profile, *bottom).max(radius_at(profile, *top))
-                }
-                Profile::Paraboloid { .. }
-                | Profile::OneSheet { .. }
-                | Profile::TwoSheets { .. } => return None,
-            };
-            let side = DVec3::new(radius, radius, 0.0);
-            Some(Aabb::new(*bottom * DVec3::Z - side, *top * DVec3::Z + side))
-        }
-        Primitive::HalfSpace { .. } => None,
-    }
-}
-
 /// The bounds of a solid that is a union, with curves as they are; `None` if something is
 /// subtracted or intersected.
 pub(crate) fn bounds_of_union(solid: &Solid) -> Option<Aabb> {
@@ -270,8 +247,6 @@ pub(crate) fn bounds_of_union(solid: &Solid) -> Option<Aabb> {
     let mut open = vec![(solid, DAffine3::IDENTITY)];
     while let Some((solid, map)) = open.pop() {
         let children = solid.children();
-        let rows = map.matrix3.transpose();
-        let rows = [rows.x_axis, rows.y_axis, rows.z_axis];
         let found = match solid.kind() {
             Kind::Mapped(own) => {
                 open.extend(children.iter().map(|child| (child, map * **own)));
@@ -287,31 +262,18 @@ pub(crate) fn bounds_of_union(solid: &Solid) -> Option<Aabb> {
                 let points = used.map(|&i| mesh.points()[i as usize]);
                 Aabb::around(points.map(|p| map.transform_point3(p)))
             }
-            Kind::Primitive(Primitive::Quadric {
-                profile: Profile::Ball { radius },
-                bottom,
-                top,
-            }) if *bottom <= -radius && *top >= *radius => {
-                let side = *radius * DVec3::from_array(rows.map(DVec3::length));
-                Aabb::new(map.translation - side, map.translation + side)
+            Kind::Primitive(primitive) => {
+                let primitive = primitive.describe();
+                match primitive.facets() {
+                    Facets::Ball { .. } | Facets::Frustum { .. } => {
+                        primitive.extent().mapped(&map)
+                    }
+                    Facets::Polyhedron { points, .. } => {
+                        Aabb::around(points.into_iter().map(|p| map.transform_point3(p)))
+                    }
+                    Facets::HalfSpace { .. } | Facets::Unknown => return None,
+                }
             }
-            Kind::Primitive(Primitive::Quadric {
-                profile: profile @ (Profile::Cylinder { .. } | Profile::Cone { .. }),
-                bottom,
-                top,
-            }) => {
-                let lengths = rows.map(|row| row.truncate().length());
-                let end = |z: f64| {
-                    let side = radius_at(profile, z) * DVec3::from_array(lengths);
-                    let center = map.transform_point3(z * DVec3::Z);
-                    Aabb::new(center - side, center + side)
-                };
-                end(*bottom).hull(end(*top))
-            }
-            Kind::Primitive(Primitive::Cuboid { min, max }) => {
-                Aabb::new(*min, *max).mapped(&map)
-            }
-            Kind::Primitive(_) => return None,
         };
         around = around.hull(found);
     }

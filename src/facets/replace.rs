@@ -3,12 +3,9 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::DVec3;
-
 use super::FacetsError;
-use crate::aabb::Aabb;
 use crate::mesh::{Mesh, round};
-use crate::shape::{Primitive, Profile};
+use crate::primitive::{Facets, Primitive};
 use crate::solid::{Kind, Solid};
 
 /// A solid whose leaves are meshes.
@@ -65,7 +62,7 @@ struct Replace {
     segments: u32,
     most_triangles: u64,
     /// The meshes made so far, by the bits of what they stand for.
-    meshes: HashMap<[u64; 6], Arc<Mesh>>,
+    meshes: HashMap<Vec<u64>, Arc<Mesh>>,
 }
 
 impl Replace {
@@ -106,40 +103,34 @@ impl Replace {
 
     fn primitive(&mut self, primitive: &Primitive) -> Result<Faceted, FacetsError> {
         let segments = self.segments;
-        let numbers = |kind: u64, n: [f64; 4]| {
-            let [a, b, c, d] = n.map(f64::to_bits);
-            [kind, a, b, c, d, 0]
-        };
-        let (key, curves, make): (_, _, Box<dyn Fn() -> Result<Mesh, _>>) =
-            match *primitive {
-                Primitive::Cuboid { min, max } => {
-                    let mut key = [0; 6];
-                    let corners = min.to_array().into_iter().chain(max.to_array());
-                    key.iter_mut().zip(corners).for_each(|(k, x)| *k = x.to_bits());
-                    (key, 0, Box::new(move || cuboid(min, max)))
+        let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect();
+        // Keys of different kinds differ in length: 1, 4, and more.
+        let (count, curves, key, make): (_, _, Vec<u64>, Box<dyn FnOnce() -> _>) =
+            match primitive.describe().facets() {
+                Facets::Ball { radius } => (
+                    round::ball_triangles(segments),
+                    1,
+                    bits(&[radius]),
+                    Box::new(move || round::ball(segments, radius)),
+                ),
+                Facets::Frustum { radii: [a, b], ends: [c, d] } => (
+                    round::frustum_triangles(segments),
+                    1,
+                    bits(&[a, b, c, d]),
+                    Box::new(move || round::frustum(segments, [a, b], [c, d])),
+                ),
+                Facets::Polyhedron { points, faces } => {
+                    let coordinates = points.iter().flat_map(|p| p.to_array());
+                    let mut key: Vec<u64> = coordinates.map(f64::to_bits).collect();
+                    key.extend(faces.iter().flatten().map(|&i| u64::from(i)));
+                    let count = faces.len() as u64;
+                    (count, 0, key, Box::new(move || Mesh::new(points, faces)))
                 }
-                Primitive::Quadric { profile: Profile::Ball { radius }, bottom, top }
-                    if bottom <= -radius && top >= radius =>
-                {
-                    self.allow(round::ball_triangles(segments))?;
-                    let key = numbers(u64::MAX, [radius, 0.0, 0.0, 0.0]);
-                    (key, 1, Box::new(move || round::ball(segments, radius)))
-                }
-                Primitive::Quadric {
-                    profile: profile @ (Profile::Cylinder { .. } | Profile::Cone { .. }),
-                    bottom,
-                    top,
-                } => {
-                    self.allow(round::frustum_triangles(segments))?;
-                    let heights = [bottom, top];
-                    let radii = heights.map(|z| radius_at(&profile, z));
-                    let key = numbers(u64::MAX - 1, [radii[0], radii[1], bottom, top]);
-                    (key, 1, Box::new(move || round::frustum(segments, radii, heights)))
-                }
-                Primitive::Quadric { .. } | Primitive::HalfSpace { .. } => {
+                Facets::HalfSpace { .. } | Facets::Unknown => {
                     return Err(FacetsError::NoFacets(primitive.name()));
                 }
             };
+        self.allow(count)?;
         let mesh = match self.meshes.get(&key) {
             Some(mesh) => mesh.clone(),
             None => {
@@ -151,35 +142,4 @@ impl Replace {
         let triangles = mesh.faces().len() as u64;
         Ok(Faceted { solid: Solid::mesh(mesh), curves, triangles })
     }
-}
-
-/// The radius of a cylinder or cone at a height.
-pub(super) fn radius_at(profile: &Profile, z: f64) -> f64 {
-    match *profile {
-        Profile::Cylinder { radius } => radius,
-        Profile::Cone { radius, slope } => (radius + slope * z).max(0.0),
-        Profile::Ball { .. }
-        | Profile::Paraboloid { .. }
-        | Profile::OneSheet { .. }
-        | Profile::TwoSheets { .. } => f64::NAN,
-    }
-}
-
-/// The twelve triangles of a box.
-pub(super) fn cuboid(min: DVec3, max: DVec3) -> Result<Mesh, crate::MeshError> {
-    let faces = [
-        [0, 2, 1],
-        [1, 2, 3],
-        [4, 5, 6],
-        [5, 7, 6],
-        [0, 1, 4],
-        [1, 5, 4],
-        [2, 6, 3],
-        [3, 6, 7],
-        [0, 4, 2],
-        [2, 4, 6],
-        [1, 3, 5],
-        [3, 7, 5],
-    ];
-    Mesh::new(Aabb::new(min, max).corners().to_vec(), faces.to_vec())
 }

@@ -14,7 +14,6 @@ mod lattice;
 mod overlap;
 mod points;
 mod properties;
-mod rounded;
 mod several;
 mod shares;
 mod spread;

@@ -18,7 +18,8 @@ use crate::bvh::Bvh;
 use crate::mesh::Mesh;
 use crate::op::Op;
 use crate::parts::Part;
-use crate::shape::{BadParameter, Chain, Placed, Plane, Primitive, Shape, Slack, Stage};
+use crate::primitive::{BadParameter, Primitive};
+use crate::shape::{Chain, Placed, Plane, Shape, Slack, Stage};
 use crate::shown::Shown;
 use crate::solid::{Kind, Place, Solid, Tag};
 

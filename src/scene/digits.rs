@@ -12,7 +12,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::shape::{Primitive, Profile};
+use crate::primitive::Primitive;
 use crate::solid::{Kind, Solid};
 
 /// What a number may be off by: its digits are six, or fewer or more.
@@ -104,32 +104,16 @@ impl Above {
 
 /// The largest coordinates of a primitive, and what its sizes may be off by on each axis.
 fn sizes(primitive: &Primitive) -> (DVec3, DVec3) {
-    match *primitive {
-        Primitive::Cuboid { min, max } => {
-            let off =
-                |i: usize| error(min[i]).max(error(max[i])).max(error(max[i] - min[i]));
-            (min.abs().max(max.abs()), DVec3::new(off(0), off(1), off(2)))
-        }
-        Primitive::Quadric { profile, bottom, top } => {
-            let radii = match profile {
-                Profile::Ball { radius } | Profile::Cylinder { radius } => [radius; 2],
-                Profile::Cone { radius, slope } => {
-                    [bottom, top].map(|z| radius + slope * z)
-                }
-                // No file has these.
-                Profile::Paraboloid { .. }
-                | Profile::OneSheet { .. }
-                | Profile::TwoSheets { .. } => [0.0; 2],
-            };
-            let [a, b] = radii;
-            let across = error(a).max(error(b));
-            let along = error(bottom).max(error(top)).max(error(top - bottom));
-            let (wide, high) = (a.max(b), bottom.abs().max(top.abs()));
-            (DVec3::new(wide, wide, high), DVec3::new(across, across, along))
-        }
-        // No file has these either.
-        Primitive::HalfSpace { .. } => (DVec3::ZERO, DVec3::ZERO),
-    }
+    let primitive = primitive.describe();
+    let off = |lengths: Vec<f64>| lengths.into_iter().map(error).fold(0.0, f64::max);
+    let around = primitive.extent().mapped(&DAffine3::IDENTITY);
+    // What has no bounds is in no file.
+    let arm = if around.is_bounded() {
+        around.min.abs().max(around.max.abs())
+    } else {
+        DVec3::ZERO
+    };
+    (arm, DVec3::from_array(primitive.lengths().map(off)))
 }
 
 /// How far the surfaces of each leaf may be from where they were meant, in the order in which

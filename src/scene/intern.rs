@@ -56,7 +56,7 @@ impl Surfaces {
     pub(super) fn new(shapes: &mut [Shape], extents: &[Extent]) -> Self {
         let (mut planes, mut walls, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
         for (leaf, shape) in (0..).zip(shapes) {
-            let before = u32::from(matches!(shape, Shape::Quadric(_)));
+            let before = u32::from(shape.wall_mut().is_some());
             let own = (before..).zip(shape.planes_mut());
             planes.extend(own.map(|(face, &mut surface)| Face { surface, leaf, face }));
             let own =

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use crate::aabb::Aabb;
-use crate::shape::{Plane, Polyhedron, Profile, Wall};
+use crate::primitive::Profile;
+use crate::shape::{Plane, Polyhedron, Wall};
 
 /// How far rounding moves a surface, in units of the largest coordinate of its leaf times
 /// the condition number of its map.

@@ -28,9 +28,7 @@
 //! bound of a crossing is the largest of all faces of the leaf that are as near as rounding.
 
 use super::Line;
-
-/// The unit of rounding, 2⁻⁵³.
-pub(crate) const U: f64 = 0.5 * f64::EPSILON;
+pub(crate) use crate::rounded::U;
 
 /// A place on a line from which the faces of a leaf are looked at.
 #[derive(Clone, Copy, Debug)]

@@ -1,34 +1,17 @@
 //! The leaves of a scene: where a line crosses them, and with which normal.
 //!
-//! # To add a primitive
+//! There are two kinds. [`Sides`] are on the inner side of planes and at most one quadric: all
+//! primitives are, so that one more of those (see `crate::primitive`) changes nothing here. A
+//! [`Polyhedron`] is a mesh.
 //!
-//! Ask first whether it is a combination of those there are. Then a maker in `solid.rs` is all that
-//! it takes, and a keyword in the reader if a format has one: a capsule is a cylinder and two balls, a
-//! wedge a box and a half-space.
-//!
-//! A surface of revolution of the second degree is a `Profile`: its equation and its name in
-//! `primitive.rs`, its maker in `solid.rs`, and the arms that the compiler asks for, in `wall.rs` and
-//! `quadric.rs` for rays, elsewhere for volumes, facets and digits.
-//!
-//! A leaf with a surface of another kind:
-//!
-//! 1. describe it in [`Primitive`] (`primitive.rs`), with its name and the check of its sizes;
-//! 2. write its file here, with the methods of `Surface`, where lines are inside, and its
-//!    bounds;
-//! 3. add it to `Shape` and the matches below, and give it a maker in `solid.rs`;
-//! 4. answer the compiler. It asks, of a `Shape`, how regions, points and the machine's vectors see it
-//!    (`region.rs`, `point.rs`, `scene/beam/block.rs`, `scene/beam/meshes.rs`), and of a `Primitive`
-//!    how rounding moves it (`scene/digits.rs`), its volume (`measure/exact/primitive.rs`), its facets
-//!    (`facets/parts.rs`, `facets/replace.rs`) and whether hulls know it (`read/hull/leaves.rs`,
-//!    `read/openscad/convex.rs`); most of them have an answer for what they do not know;
-//! 5. have it tested with all others: a leaf in `tests/support/model.rs`, its faces in
-//!    `tests/oracle/surface.rs`.
+//! A leaf of a third kind would have its own file here, with the methods of [`Surface`] and where
+//! lines are inside. Then the compiler asks how regions, points and the machine's vectors see it:
+//! in the matches below, in `region.rs`, `point.rs`, `scene/beam/block.rs` and
+//! `scene/beam/meshes.rs`.
 
 mod ahead;
 mod chain;
-mod cuboid;
 mod doubt;
-mod half_space;
 mod line;
 mod over;
 mod pack;
@@ -36,12 +19,11 @@ mod place;
 mod plane;
 mod point;
 mod polyhedron;
-mod primitive;
-mod quadric;
 mod region;
 mod share;
 mod shear;
 mod sheared;
+mod sides;
 mod stretch;
 mod touch;
 mod wall;
@@ -54,12 +36,11 @@ use glam::{DMat3, DVec3};
 
 use crate::aabb::Aabb;
 use crate::lanes::whole;
+use crate::primitive::Primitive;
 use crate::ray::Sense;
 pub(crate) use ahead::Ahead;
 pub(crate) use chain::Chain;
-use cuboid::Cuboid;
 pub(crate) use doubt::{Local, Spot, U};
-use half_space::HalfSpace;
 pub(crate) use line::{Heading, Line, Lines, Rays, Stage, inverse_power_of_two};
 pub(crate) use pack::{Kept, Linear, Pack, View};
 use place::Frame;
@@ -67,11 +48,10 @@ pub(crate) use place::{ToLocal, inverse};
 pub(crate) use plane::{Keeps, Plane};
 pub(crate) use point::{Beside, Equation};
 pub(crate) use polyhedron::{IndexedMesh, Polyhedron};
-pub use primitive::{BadParameter, Primitive, Profile};
-use quadric::Quadric;
 pub(crate) use region::{Region, Side};
 pub(crate) use share::Block;
 pub(crate) use sheared::Sheared;
+pub(crate) use sides::Sides;
 pub(crate) use stretch::Stretch;
 pub(crate) use wall::Wall;
 
@@ -112,10 +92,8 @@ pub(crate) trait Surface {
 /// A placed leaf: the closed list of what there is.
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
-    Cuboid(Cuboid),
-    HalfSpace(HalfSpace),
+    Sides(Sides),
     Polyhedron(Polyhedron),
-    Quadric(Quadric),
 }
 
 /// A leaf in its place.
@@ -166,33 +144,7 @@ impl Slack {
 impl Shape {
     /// A primitive under a map; or the determinant of a map that cannot be inverted.
     pub(crate) fn place(primitive: &Primitive, chain: &Chain) -> Result<Placed, f64> {
-        let frame = Frame::new(chain.map)?;
-        let slack = |radius, has_planes| Slack::of(&frame, chain, radius, has_planes);
-        let (shape, bounds, slack, reach) = match *primitive {
-            Primitive::Cuboid { min, max } => (
-                Self::Cuboid(Cuboid::new(&frame, min, max)),
-                Cuboid::bounds(&frame, min, max),
-                slack(min.abs().max(max.abs()).length(), true),
-                frame.reach(min.abs().max(max.abs())),
-            ),
-            Primitive::Quadric { profile, bottom, top } => (
-                Self::Quadric(Quadric::new(&frame, profile, bottom, top)),
-                Quadric::bounds(&frame, profile, bottom, top),
-                slack(
-                    Quadric::radius(profile, bottom, top),
-                    !Quadric::is_whole(profile, bottom, top),
-                ),
-                frame.reach(DVec3::splat(Quadric::radius(profile, bottom, top))),
-            ),
-            Primitive::HalfSpace { normal, offset } => {
-                let leaf = HalfSpace::new(&frame, normal, offset);
-                let bounds = leaf.bounds();
-                let slack = Slack::Unbounded(Box::new((frame, *chain)));
-                let reach = leaf.planes[0].offset.abs();
-                (Self::HalfSpace(leaf), bounds, slack, reach)
-            }
-        };
-        Ok(Placed { shape, bounds, condition: frame.condition(), slack, reach })
+        Sides::place(primitive.describe(), chain)
     }
 
     /// A mesh under a map; or the determinant of a map that cannot be inverted.
@@ -211,17 +163,23 @@ impl Shape {
     /// Whether the leaf is all of its bounds: a box along the axes.
     pub(crate) fn fills_its_bounds(&self) -> bool {
         match self {
-            Self::Cuboid(leaf) => leaf.planes.iter().all(|plane| plane.axis().is_some()),
-            Self::HalfSpace(_) | Self::Polyhedron(_) | Self::Quadric(_) => false,
+            Self::Sides(leaf) => leaf.is_box(),
+            Self::Polyhedron(_) => false,
+        }
+    }
+
+    /// The mesh, if it is one.
+    pub(crate) fn polyhedron(&self) -> Option<&Polyhedron> {
+        match self {
+            Self::Sides(_) => None,
+            Self::Polyhedron(leaf) => Some(leaf),
         }
     }
 
     /// The planes of the leaf.
     pub(crate) fn planes_mut(&mut self) -> &mut [Plane] {
         match self {
-            Self::Cuboid(leaf) => &mut leaf.planes,
-            Self::HalfSpace(leaf) => &mut leaf.planes,
-            Self::Quadric(leaf) => leaf.planes.as_mut().map_or(&mut [], |p| p),
+            Self::Sides(leaf) => leaf.planes_mut(),
             Self::Polyhedron(_) => &mut [],
         }
     }
@@ -230,11 +188,7 @@ impl Shape {
     /// the first plane's face is that of the wall and one more, or zero.
     pub(crate) fn sides(&self) -> (&[Plane], Option<&Wall>) {
         match self {
-            Self::Cuboid(leaf) => (&leaf.planes, None),
-            Self::HalfSpace(leaf) => (&leaf.planes, None),
-            Self::Quadric(leaf) => {
-                (leaf.planes.as_ref().map_or(&[], |p| p), Some(&leaf.wall))
-            }
+            Self::Sides(leaf) => leaf.planes_and_wall(),
             Self::Polyhedron(_) => (&[], None),
         }
     }
@@ -242,23 +196,17 @@ impl Shape {
     /// The curved wall of the leaf.
     pub(crate) fn wall_mut(&mut self) -> Option<&mut Wall> {
         match self {
-            Self::Quadric(leaf) => Some(&mut leaf.wall),
-            Self::Cuboid(_) | Self::HalfSpace(_) | Self::Polyhedron(_) => None,
+            Self::Sides(leaf) => leaf.wall_mut(),
+            Self::Polyhedron(_) => None,
         }
     }
 
     /// The surface on which a face lies, and whether the leaf is on the side where that surface's
     /// equation is positive.
     pub(crate) fn identity(&self, face: u32) -> (Identity, bool) {
-        let of_plane = |plane: &Plane| (Identity::Plane(plane.numbers()), plane.above);
         match self {
-            Self::Cuboid(leaf) => of_plane(&leaf.planes[face as usize % 6]),
-            Self::HalfSpace(leaf) => of_plane(&leaf.planes[0]),
+            Self::Sides(leaf) => leaf.identity(face),
             Self::Polyhedron(leaf) => (Identity::Mesh(leaf.numbers()), false),
-            Self::Quadric(leaf) => match &leaf.planes {
-                Some(planes) if face > 0 => of_plane(&planes[(face as usize - 1) % 2]),
-                _ => (Identity::Wall(leaf.wall.numbers()), false),
-            },
         }
     }
 
@@ -266,15 +214,8 @@ impl Shape {
     /// s₁s₂, s₂s₀, s₀, s₁, s₂ and 1; none for meshes.
     pub(crate) fn form(&self, face: u32, origin: DVec3, map: DMat3) -> Option<[f64; 10]> {
         match self {
-            Self::Cuboid(leaf) => Some(leaf.planes[face as usize % 6].form(origin, map)),
-            Self::HalfSpace(leaf) => Some(leaf.planes[0].form(origin, map)),
+            Self::Sides(leaf) => Some(leaf.form(face, origin, map)),
             Self::Polyhedron(_) => None,
-            Self::Quadric(leaf) => Some(match &leaf.planes {
-                Some(planes) if face > 0 => {
-                    planes[(face as usize - 1) % 2].form(origin, map)
-                }
-                _ => leaf.wall.form(origin, map),
-            }),
         }
     }
 
@@ -284,38 +225,29 @@ impl Shape {
     #[inline(always)]
     pub(crate) fn crossings(&self, faces: u32, line: &Line, sink: &mut Sink<'_>) {
         match self {
-            Self::Cuboid(leaf) => {
-                let speeds = leaf.speeds(line.dir.into());
-                sink.stretch(&leaf.stretch(faces, &line.into(), &speeds));
-            }
-            Self::HalfSpace(leaf) => sink.stretch(&leaf.stretch(&line.into())),
-            Self::Polyhedron(leaf) => leaf.crossings(line, sink),
-            Self::Quadric(leaf) => {
+            Self::Sides(leaf) => {
                 let courses = leaf.courses(line.dir.into());
                 let stretches = leaf.stretches(faces, &line.into(), &courses);
                 let slots = leaf.slots(faces);
                 stretches[..slots].iter().for_each(|stretch| sink.stretch(stretch));
             }
+            Self::Polyhedron(leaf) => leaf.crossings(line, sink),
         }
     }
 
     /// What kind of leaf it is, as in [`Primitive::name`].
     pub(crate) fn kind(&self) -> &'static str {
         match self {
-            Self::Cuboid(_) => "cuboid",
-            Self::HalfSpace(_) => "half-space",
+            Self::Sides(leaf) => leaf.kind(),
             Self::Polyhedron(_) => "mesh",
-            Self::Quadric(leaf) => leaf.kind(),
         }
     }
 
     /// The leaf's methods.
     pub(crate) fn surface(&self) -> &dyn Surface {
         match self {
-            Self::Cuboid(leaf) => leaf,
-            Self::HalfSpace(leaf) => leaf,
+            Self::Sides(leaf) => leaf,
             Self::Polyhedron(leaf) => leaf,
-            Self::Quadric(leaf) => leaf,
         }
     }
 }

@@ -6,6 +6,7 @@ use super::Line;
 use super::chain::norm;
 use super::doubt::U;
 use crate::aabb::Aabb;
+use crate::primitive::Extent;
 
 /// The affine map of a leaf and its inverse.
 ///
@@ -84,31 +85,9 @@ impl Frame {
         self.inverse.transpose() * local
     }
 
-    /// The box around a local box.
-    pub(crate) fn bounds(&self, local: &Aabb) -> Aabb {
+    /// The box around what is within a local extent.
+    pub(crate) fn bounds(&self, local: &Extent) -> Aabb {
         local.mapped(&self.world_from_local)
-    }
-
-    /// The box around discs of these radii about the local z-axis at these heights.
-    pub(crate) fn bounds_of_discs(&self, discs: [(f64, f64); 2]) -> Aabb {
-        let m = self.world_from_local.matrix3;
-        let reach = DVec3::new(
-            m.row(0).truncate().length(),
-            m.row(1).truncate().length(),
-            m.row(2).truncate().length(),
-        );
-        discs.into_iter().fold(Aabb::EMPTY, |b, (height, radius)| {
-            let center = self.point(DVec3::new(0.0, 0.0, height));
-            b.hull(Aabb::new(center - radius * reach, center + radius * reach))
-        })
-    }
-
-    /// The box around the ball of this radius about the local origin.
-    pub(crate) fn bounds_of_ball(&self, radius: f64) -> Aabb {
-        let m = self.world_from_local.matrix3;
-        let reach = DVec3::new(m.row(0).length(), m.row(1).length(), m.row(2).length());
-        let center = self.world_from_local.translation;
-        Aabb::new(center - radius * reach, center + radius * reach)
     }
 
     /// The way into the local frame.

@@ -154,7 +154,8 @@ impl Plane {
     }
 
     /// The stretches of lines on the inner side of all planes whose bits are `wanted`, the
-    /// last plane's the lowest; may be empty or infinite.
+    /// first plane's the lowest; may be empty or infinite. It is known how fast
+    /// they rise above the first planes.
     #[inline(always)]
     pub(super) fn stretch<L: Lanes>(
         planes: &[Self],
@@ -163,8 +164,12 @@ impl Plane {
         speeds: &[L],
     ) -> Stretch<L> {
         let mut stretch = Stretch::all(rays.origin.x);
-        for ((face, plane), &speed) in (0..).zip(planes).zip(speeds) {
+        for (face, plane) in (0..).zip(planes) {
             if wanted >> face & 1 == 1 {
+                let speed = match speeds.get(face as usize) {
+                    Some(speed) => *speed,
+                    None => plane.speed(rays.dir),
+                };
                 let [from, to] = plane.inside(rays, speed);
                 stretch = stretch.cut(from, to, face);
             }

@@ -22,10 +22,10 @@
 
 use glam::DVec3;
 
+use super::Shape;
 use super::doubt::U;
 use super::plane::Plane;
 use super::wall::Wall;
-use super::{Quadric, Shape};
 use crate::aabb::Aabb;
 use crate::lanes::{Lanes, Vec3};
 
@@ -196,51 +196,42 @@ impl Shape {
         pad: f64,
         mut put: impl FnMut(Equation),
     ) {
-        match self {
-            Self::Cuboid(leaf) => {
-                let mut slabs = [None; 3];
-                of_planes(&leaf.planes, faces, within, pad, &mut |equation| {
-                    if let Equation::Slab { axis, .. } = equation {
-                        slabs[axis] = Some(equation);
-                    } else {
-                        put(equation);
-                    }
-                });
-                match cuboid(slabs) {
-                    Some(equation) => put(equation),
-                    None => slabs.into_iter().flatten().for_each(put),
-                }
+        if let Self::Polyhedron(_) = self {
+            return put(Equation::Unknown);
+        }
+        let (planes, wall) = self.sides();
+        if let Some(wall) = wall
+            && faces & 1 == 1
+        {
+            put(wall.equation(within, pad));
+        }
+        let wanted = if wall.is_some() { faces >> 1 } else { faces };
+        let mut slabs = [None; 3];
+        of_planes(planes, wanted, within, pad, &mut |equation| {
+            if let Equation::Slab { axis, .. } = equation
+                && slabs[axis].is_none()
+            {
+                slabs[axis] = Some(equation);
+            } else {
+                put(equation);
             }
-            Self::HalfSpace(leaf) => {
-                of_planes(&leaf.planes, faces, within, pad, &mut put);
-            }
-            Self::Quadric(leaf) => {
-                if faces & 1 == 1 {
-                    put(leaf.wall.equation(within, pad));
-                }
-                of_planes(leaf.ends(), faces >> 1, within, pad, &mut put);
-            }
-            Self::Polyhedron(_) => put(Equation::Unknown),
+        });
+        match cuboid(slabs) {
+            Some(equation) => put(equation),
+            None => slabs.into_iter().flatten().for_each(put),
         }
     }
 
     /// On which side of the leaf a point is that is no farther than `pad` from its box.
     pub(crate) fn beside(&self, p: DVec3, pad: f64) -> Beside {
-        match self {
-            Self::Cuboid(leaf) => of_all(Beside::In, &leaf.planes, p, pad),
-            Self::HalfSpace(leaf) => of_all(Beside::In, &leaf.planes, p, pad),
-            Self::Quadric(leaf) => match of_one(leaf.wall.valued(p, pad)) {
-                Beside::Out => Beside::Out,
-                wall @ (Beside::In | Beside::Unsure) => of_all(wall, leaf.ends(), p, pad),
-            },
-            Self::Polyhedron(_) => Beside::Unsure,
+        if let Self::Polyhedron(_) = self {
+            return Beside::Unsure;
         }
-    }
-}
-
-impl Quadric {
-    fn ends(&self) -> &[Plane] {
-        self.planes.as_ref().map_or(&[], |planes| planes)
+        let (planes, wall) = self.sides();
+        match wall.map_or(Beside::In, |wall| of_one(wall.valued(p, pad))) {
+            Beside::Out => Beside::Out,
+            known @ (Beside::In | Beside::Unsure) => of_all(known, planes, p, pad),
+        }
     }
 }
 

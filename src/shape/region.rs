@@ -10,12 +10,9 @@
 
 use glam::DVec3;
 
-use super::cuboid::Cuboid;
 use super::doubt::U;
-use super::half_space::HalfSpace;
 use super::place::ToLocal;
 use super::plane::Plane;
-use super::quadric::Quadric;
 use super::wall::Wall;
 use super::{ALL, Shape};
 use crate::aabb::Aabb;
@@ -110,23 +107,18 @@ impl Region {
         let Some(part) = self.part_in(bounds, pad) else {
             return Side::Out;
         };
-        match shape {
-            Shape::Cuboid(Cuboid { planes }) => self.of_planes(planes, part, pad).side(),
-            Shape::HalfSpace(HalfSpace { planes }) => {
-                self.of_planes(planes, part, pad).side()
-            }
-            Shape::Quadric(Quadric { wall, planes }) => {
-                let planes = planes.as_ref().map_or(&[][..], |planes| planes);
-                let mut open = self.of_planes(planes, part, pad);
-                if open.apart {
-                    return Side::Out;
-                }
-                open.faces <<= 1;
-                open.add(0, &self.of_wall(wall, part, pad));
-                open.side()
-            }
-            Shape::Polyhedron(_) => Side::Crossing(ALL),
+        if let Shape::Polyhedron(_) = shape {
+            return Side::Crossing(ALL);
         }
+        let (planes, wall) = shape.sides();
+        let mut open = self.of_planes(planes, part, pad);
+        if let Some(wall) = wall
+            && !open.apart
+        {
+            open.faces <<= 1;
+            open.add(0, &self.of_wall(wall, part, pad));
+        }
+        open.side()
     }
 
     fn of_planes(&self, planes: &[Plane], part: [f64; 2], pad: f64) -> Open {

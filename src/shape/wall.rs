@@ -19,8 +19,8 @@ use glam::{DMat3, DVec3};
 use super::doubt::{Local, Spot, U};
 use super::line::Rays;
 use super::place::ToLocal;
-use super::primitive::Profile;
 use crate::lanes::{Lanes, Vec3};
+use crate::primitive::Profile;
 
 /// A quadric that nothing cuts, `x² + y² ≤ ρ(z)` in its own frame.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,7 @@ impl Wall {
         let ends =
             if let Profile::Ball { radius } = profile { [-radius, radius] } else { ends };
         let [bottom, top] = ends;
-        let radius = profile.largest_radius(bottom, top);
+        let radius = profile.largest_radius(ends);
         let middle = 0.5 * (bottom + top);
         let reach = (0.5 * (top - bottom)).hypot(radius);
         Self { profile, to_local, ends, middle, reach }
@@ -277,7 +277,7 @@ impl Wall {
     /// wall: the ratio of the lengths along and across the axis.
     pub(crate) fn slenderness(&self) -> f64 {
         let [bottom, top] = self.ends;
-        let radius = self.profile.largest_radius(bottom, top);
+        let radius = self.profile.largest_radius(self.ends);
         let far = match self.profile {
             Profile::Cone { radius, slope } => (radius / slope).abs() + (top - bottom),
             Profile::Ball { .. }
@@ -300,7 +300,7 @@ impl Wall {
     /// high; where their coefficients differ by δ the walls are about δ/2 apart.
     pub(crate) fn distance(&self, other: &Self) -> f64 {
         let [bottom, top] = self.ends;
-        let radius = self.profile.largest_radius(bottom, top);
+        let radius = self.profile.largest_radius(self.ends);
         let scale = DVec3::new(radius, radius, 0.5 * (top - bottom));
         let back = self.to_local.linear_to_world();
         let origin = self.to_local.origin + back * DVec3::new(0.0, 0.0, self.middle);
@@ -369,57 +369,6 @@ impl Wall {
 }
 
 impl Profile {
-    /// The heights between which there is anything, within two given ones.
-    pub(super) fn extent(&self, bottom: f64, top: f64) -> (f64, f64) {
-        match *self {
-            Self::Ball { radius } => (bottom.max(-radius), top.min(radius)),
-            Self::Paraboloid { .. } => (bottom.max(0.0), top),
-            Self::TwoSheets { vertex, .. } => (
-                if bottom > -vertex { bottom.max(vertex) } else { bottom },
-                if top < vertex { top.min(-vertex) } else { top },
-            ),
-            Self::Cylinder { .. } | Self::Cone { .. } | Self::OneSheet { .. } => {
-                (bottom, top)
-            }
-        }
-    }
-
-    /// The radius at a height; zero where there is nothing.
-    pub(super) fn radius(&self, z: f64) -> f64 {
-        match *self {
-            Self::Cylinder { radius } => radius,
-            Self::Cone { radius, slope } => (radius + slope * z).max(0.0),
-            Self::Ball { .. }
-            | Self::Paraboloid { .. }
-            | Self::OneSheet { .. }
-            | Self::TwoSheets { .. } => {
-                let [a, b, c] = self.coefficients();
-                (z * (a * z + 2.0 * b) + c).max(0.0).sqrt()
-            }
-        }
-    }
-
-    /// The largest radius between two heights: at an end, or at the equator of a ball.
-    pub(super) fn largest_radius(&self, bottom: f64, top: f64) -> f64 {
-        match *self {
-            Self::Ball { radius } if bottom <= 0.0 && top >= 0.0 => radius,
-            Self::Ball { .. }
-            | Self::Cylinder { .. }
-            | Self::Cone { .. }
-            | Self::Paraboloid { .. }
-            | Self::OneSheet { .. }
-            | Self::TwoSheets { .. } => self.radius(bottom).max(self.radius(top)),
-        }
-    }
-
-    /// Whether a line can come out of it twice.
-    pub(crate) const fn can_be_left_twice(&self) -> bool {
-        match self {
-            Self::Ball { .. } | Self::Cylinder { .. } | Self::Paraboloid { .. } => false,
-            Self::Cone { .. } | Self::OneSheet { .. } | Self::TwoSheets { .. } => true,
-        }
-    }
-
     /// `x² + y² − ρ(z)` at points, as a product where it is a difference of squares.
     #[inline(always)]
     fn value<L: Lanes>(&self, p: Vec3<L>) -> L {

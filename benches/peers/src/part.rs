@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 use serde_json::{Value, json};
-use solidray::shape::{Primitive, Profile};
+use solidray::primitive::{Cuboid, Primitive, Profile, Quadric};
 use solidray::{Op, Solid, View};
 
 /// A node of a tree without maps between the operators.
@@ -55,18 +55,18 @@ impl Part {
         };
         let map = [row(0), row(1), row(2)];
         match *primitive {
-            Primitive::Cuboid { min, max } => {
+            Primitive::Cuboid(Cuboid { min, max }) => {
                 json!({ "leaf": "cuboid", "min": min.to_array(), "max": max.to_array(), "map": map })
             }
-            Primitive::Quadric { profile: Profile::Ball { radius }, .. } => {
+            Primitive::Quadric(Quadric { profile: Profile::Ball { radius }, .. }) => {
                 json!({ "leaf": "ball", "radius": radius, "map": map })
             }
-            Primitive::Quadric { profile, bottom, top } => {
+            Primitive::Quadric(Quadric { profile, bottom, top }) => {
                 let [low, high] = [bottom, top].map(|z| radius_at(&profile, z));
                 json!({ "leaf": "frustum", "radii": [low, high], "heights": [bottom, top],
                         "map": map })
             }
-            Primitive::HalfSpace { .. } => json!({ "leaf": "half-space" }),
+            Primitive::HalfSpace(_) | _ => json!({ "leaf": primitive.name() }),
         }
     }
 }

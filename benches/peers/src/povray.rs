@@ -8,8 +8,8 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, ensure};
 use glam::{DAffine3, DMat3, DVec3};
 use solidray::Op;
+use solidray::primitive::{Cuboid, Primitive, Profile, Quadric};
 use solidray::render::View;
-use solidray::shape::{Primitive, Profile};
 
 use crate::clock::child_seconds;
 use crate::part::{Part, radius_at};
@@ -96,15 +96,15 @@ fn leaf(primitive: &Primitive, map: &DAffine3) -> String {
     };
     let mut text = String::new();
     let written = match *primitive {
-        Primitive::Cuboid { min, max } if at.matrix3 == DMat3::IDENTITY => {
+        Primitive::Cuboid(Cuboid { min, max }) if at.matrix3 == DMat3::IDENTITY => {
             let [min, max] = [min, max].map(|p| vector(at.translation + p));
             write!(text, "box {{ {min}, {max}{stretch} }}")
         }
-        Primitive::Quadric { profile: Profile::Ball { radius }, .. } => {
+        Primitive::Quadric(Quadric { profile: Profile::Ball { radius }, .. }) => {
             let center = vector(at.translation);
             write!(text, "sphere {{ {center}, {radius:e}{stretch} }}")
         }
-        Primitive::Quadric { profile, bottom, top } => {
+        Primitive::Quadric(Quadric { profile, bottom, top }) => {
             let [foot, head] =
                 [bottom, top].map(|z| vector(at.transform_point3(z * DVec3::Z)));
             match [bottom, top].map(|z| radius_at(&profile, z)) {

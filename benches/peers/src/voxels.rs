@@ -10,8 +10,8 @@ use fidget::shape::{BoundShape, ShapeTape};
 use glam::{DAffine3, DVec3};
 use nalgebra::{Matrix4, Vector4};
 use solidray::Op;
+use solidray::primitive::{Cuboid, HalfSpace, Primitive, Profile, Quadric};
 use solidray::render::View;
-use solidray::shape::{Primitive, Profile};
 
 use crate::part::{Part, radius_at};
 
@@ -117,15 +117,15 @@ fn leaf(primitive: &Primitive, map: &DAffine3, axes: &[Tree; 3]) -> Tree {
         (constant(low) - at.clone()).max(at.clone() - constant(high))
     };
     match *primitive {
-        Primitive::Cuboid { min, max } => {
+        Primitive::Cuboid(Cuboid { min, max }) => {
             let [x, y, z] = [(x, 0), (y, 1), (z, 2)]
                 .map(|(at, axis)| between(&at, min[axis], max[axis]));
             x.max(y).max(z)
         }
-        Primitive::Quadric { profile: Profile::Ball { radius }, .. } => {
+        Primitive::Quadric(Quadric { profile: Profile::Ball { radius }, .. }) => {
             x.square() + y.square() + z.square() - constant(radius * radius)
         }
-        Primitive::Quadric { profile, bottom, top } => {
+        Primitive::Quadric(Quadric { profile, bottom, top }) => {
             let squared = match profile {
                 Profile::Cone { radius, slope } => {
                     (constant(radius) + constant(slope) * z.clone()).square()
@@ -134,7 +134,10 @@ fn leaf(primitive: &Primitive, map: &DAffine3, axes: &[Tree; 3]) -> Tree {
             };
             (x.square() + y.square() - squared).max(between(&z, bottom, top))
         }
-        Primitive::HalfSpace { normal, offset } => linear(normal, -offset, &[x, y, z]),
+        Primitive::HalfSpace(HalfSpace { normal, offset }) => {
+            linear(normal, -offset, &[x, y, z])
+        }
+        _ => panic!("voxels are not told of {primitive:?}"),
     }
 }
 

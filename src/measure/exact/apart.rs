@@ -1,7 +1,7 @@
 //! Leaves that do not overlap, as far as their boxes say.
 
-use super::super::rounded::Rounded;
 use crate::aabb::Aabb;
+use crate::rounded::Rounded;
 use crate::shape::U;
 
 /// A leaf with its volume, and a box around it.

@@ -1,14 +1,13 @@
 //! Volumes by formulas, without a single ray.
 
 mod apart;
-mod primitive;
 mod star;
 
 use glam::{DAffine3, DVec3};
 
 use super::estimate::{Estimate, Method};
-use super::rounded::{Rounded, Sum};
 use crate::op::Op;
+use crate::rounded::{Rounded, Sum};
 use crate::scene::CompileOptions;
 use crate::shape::{Chain, IndexedMesh, Shape, Slack, U};
 use crate::solid::{Kind, Solid};
@@ -57,7 +56,7 @@ fn leaves(solid: &Solid) -> Option<Vec<Boxed>> {
             Kind::Primitive(shape) => {
                 shape.check().ok()?;
                 let placed = Shape::place(shape, &chain).ok()?;
-                let volume = primitive::volume(shape)? * determinant(&chain);
+                let volume = shape.describe().volume()? * determinant(&chain);
                 leaves.push(Boxed::new(volume, &placed)?);
             }
             Kind::Mesh(mesh) if mesh.faces().is_empty() => {}

@@ -8,9 +8,9 @@
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
-use super::super::rounded::{Rounded, Sum};
 use crate::aabb::Aabb;
 use crate::mesh::Mesh;
+use crate::rounded::{Rounded, Sum};
 use crate::shape::U;
 
 /// Sizes between which products of three coordinates are exact enough for the predicate.

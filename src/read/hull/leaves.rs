@@ -4,10 +4,9 @@ use glam::{DAffine3, DVec3};
 
 use super::super::similar;
 use super::balls::Ball;
-use crate::aabb::Aabb;
 use crate::facets::{self, FacetsError, Fine};
 use crate::op::Op;
-use crate::shape::{Primitive, Profile};
+use crate::primitive::Facets;
 use crate::solid::{Kind, Solid};
 
 /// A part of a union.
@@ -55,13 +54,12 @@ pub(super) fn leaves(
                 open.extend(children.iter().map(|child| (child, map)));
             }
             Kind::Mesh(mesh) => found.push(points(mesh.points().iter().copied(), &map)),
-            Kind::Primitive(Primitive::Cuboid { min, max }) => {
-                found.push(points(Aabb::new(*min, *max).corners().into_iter(), &map));
-            }
             Kind::Primitive(primitive) => {
-                let Some(leaf) = curve(primitive, map) else { return Ok(None) };
+                let Some(leaf) = leaf(primitive.describe().facets(), map) else {
+                    return Ok(None);
+                };
+                has_curves |= !matches!(leaf, Leaf::Points(_));
                 found.push(leaf);
-                has_curves = true;
             }
         }
     }
@@ -72,33 +70,32 @@ fn points(points: impl Iterator<Item = DVec3>, map: &DAffine3) -> Leaf {
     Leaf::Points(points.map(|p| map.transform_point3(p)).collect())
 }
 
-/// A whole ball or a cylinder.
-fn curve(primitive: &Primitive, map: DAffine3) -> Option<Leaf> {
-    match *primitive {
-        Primitive::Quadric { profile: Profile::Ball { radius }, bottom, top }
-            if bottom <= -radius && top >= radius =>
-        {
+/// A whole ball, a cylinder or the corners of a polyhedron.
+fn leaf(facets: Facets, map: DAffine3) -> Option<Leaf> {
+    match facets {
+        Facets::Ball { radius } => {
             let radius = radius * similar::scale(&map.matrix3)?;
             Some(Leaf::Ball(Ball { center: map.translation, radius }))
         }
-        Primitive::Quadric { profile: Profile::Cylinder { radius }, bottom, top } => {
-            Some(Leaf::Cylinder { radius, ends: [bottom, top], map })
+        #[expect(clippy::float_cmp, reason = "a cone is none, however steep")]
+        Facets::Frustum { radii: [radius, top], ends } if radius == top => {
+            Some(Leaf::Cylinder { radius, ends, map })
         }
-        Primitive::Quadric { .. }
-        | Primitive::Cuboid { .. }
-        | Primitive::HalfSpace { .. } => None,
+        Facets::Polyhedron { points: corners, .. } => {
+            Some(points(corners.into_iter(), &map))
+        }
+        Facets::Frustum { .. } | Facets::HalfSpace { .. } | Facets::Unknown => None,
     }
 }
 
-/// Whether a solid is made of boxes and meshes.
+/// Whether a solid is made of polyhedra and meshes.
 fn is_polyhedral(solid: &Solid) -> bool {
     let mut open = vec![solid];
     while let Some(solid) = open.pop() {
         let is_polyhedron = match solid.kind() {
-            Kind::Primitive(Primitive::Quadric { .. } | Primitive::HalfSpace { .. }) => {
-                false
+            Kind::Primitive(primitive) => {
+                matches!(primitive.describe().facets(), Facets::Polyhedron { .. })
             }
-            Kind::Primitive(Primitive::Cuboid { .. }) => true,
             Kind::Mesh(_) | Kind::Boolean(_) | Kind::Mapped(_) | Kind::Tagged(_) => true,
         };
         if !is_polyhedron {

@@ -15,7 +15,6 @@ use super::node::Shape;
 use crate::facets::{self, FacetsError, Fine, Operand};
 use crate::mesh::Mesh;
 use crate::op::Op;
-use crate::shape::{Primitive, Profile};
 use crate::solid::{Kind, Solid, Tag};
 
 /// The convex hull of all children. Within another hull these do as they are.
@@ -219,22 +218,12 @@ fn solid(
     Ok(Shape::Solid(solid.placed(call.place()).as_outline()))
 }
 
-/// Whether a solid is a single box, ball, cylinder or cone.
+/// Whether a solid is a single convex primitive.
 fn is_convex(mut solid: &Solid) -> bool {
     loop {
         match (solid.kind(), solid.children()) {
             (Kind::Primitive(primitive), _) => {
-                return match primitive {
-                    Primitive::Cuboid { .. } => true,
-                    Primitive::Quadric { profile, .. } => match profile {
-                        Profile::Ball { .. }
-                        | Profile::Cylinder { .. }
-                        | Profile::Cone { .. }
-                        | Profile::Paraboloid { .. } => true,
-                        Profile::OneSheet { .. } | Profile::TwoSheets { .. } => false,
-                    },
-                    Primitive::HalfSpace { .. } => false,
-                };
+                return primitive.describe().is_convex();
             }
             (Kind::Mesh(_), _) => return false,
             (_, [only]) => solid = only,

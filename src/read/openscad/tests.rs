@@ -8,7 +8,7 @@ use super::super::{Curves, Model, ReadOptions};
 use super::read;
 use crate::mesh::Mesh;
 use crate::op::Op;
-use crate::shape::Primitive;
+use crate::primitive::Curved;
 use crate::solid::{Kind, Solid};
 
 fn model(text: &str, curves: Curves) -> Model {
@@ -21,16 +21,16 @@ fn contains(solid: &Solid, p: DVec3) -> bool {
     let node = solid.node();
     let mut children = node.children.iter();
     match &node.kind {
-        Kind::Primitive(Primitive::Cuboid { min, max }) => {
-            p.cmpge(*min).all() && p.cmple(*max).all()
-        }
-        Kind::Primitive(Primitive::Quadric { profile, bottom, top }) => {
-            let [a, b, c] = profile.coefficients();
-            (*bottom..=*top).contains(&p.z)
-                && p.truncate().length_squared() <= (a * p.z + 2.0 * b) * p.z + c
-        }
-        Kind::Primitive(Primitive::HalfSpace { normal, offset }) => {
-            normal.dot(p) <= *offset
+        Kind::Primitive(primitive) => {
+            let primitive = primitive.describe();
+            let is_in_wall =
+                primitive.wall().is_none_or(|Curved { profile, ends: [a, b] }| {
+                    let [zz, z, one] = profile.coefficients();
+                    (a..=b).contains(&p.z)
+                        && p.truncate().length_squared()
+                            <= (zz * p.z + 2.0 * z) * p.z + one
+                });
+            is_in_wall && primitive.planes().iter().all(|f| f.normal.dot(p) <= f.offset)
         }
         Kind::Mesh(mesh) => winding(mesh, p) > 0.5,
         Kind::Boolean(Op::Union) => children.any(|c| contains(c, p)),

@@ -142,8 +142,7 @@ impl Block {
 /// How many slots [`Block::stretches`] fills.
 pub(super) fn slots_of(shape: &Shape, faces: u32) -> usize {
     match shape {
-        Shape::Quadric(leaf) => leaf.slots(faces),
-        Shape::Cuboid(_) | Shape::HalfSpace(_) => 1,
+        Shape::Sides(leaf) => leaf.slots(faces),
         Shape::Polyhedron(_) => 0,
     }
 }
@@ -215,44 +214,21 @@ impl Stretches<'_> {
             Some(dir) => dir,
             None => load3(simd, &block.dir, 0),
         };
+        let Shape::Sides(leaf) = shape else { return };
         // What depends on a direction alone is found once where all have the same.
-        match shape {
-            Shape::Cuboid(leaf) => {
-                let mut speeds = leaf.speeds(dir);
-                for i in 0..BLOCK / S::F64_LANES {
-                    if is_wanted::<S>(wanted, i) {
-                        let rays = block.rays(simd, i, common);
-                        if common.is_none() {
-                            speeds = leaf.speeds(rays.dir);
-                        }
-                        first.put(i, leaf.stretch(faces, &rays, &speeds));
-                    }
+        let mut courses = leaf.courses(dir);
+        for i in 0..BLOCK / S::F64_LANES {
+            if is_wanted::<S>(wanted, i) {
+                let rays = block.rays(simd, i, common);
+                if common.is_none() {
+                    courses = leaf.courses(rays.dir);
+                }
+                let [one, other] = leaf.stretches(faces, &rays, &courses);
+                first.put(i, one);
+                if twice {
+                    second.put(i, other);
                 }
             }
-            Shape::HalfSpace(leaf) => {
-                for i in 0..BLOCK / S::F64_LANES {
-                    if is_wanted::<S>(wanted, i) {
-                        first.put(i, leaf.stretch(&block.rays(simd, i, common)));
-                    }
-                }
-            }
-            Shape::Quadric(leaf) => {
-                let mut courses = leaf.courses(dir);
-                for i in 0..BLOCK / S::F64_LANES {
-                    if is_wanted::<S>(wanted, i) {
-                        let rays = block.rays(simd, i, common);
-                        if common.is_none() {
-                            courses = leaf.courses(rays.dir);
-                        }
-                        let [one, other] = leaf.stretches(faces, &rays, &courses);
-                        first.put(i, one);
-                        if twice {
-                            second.put(i, other);
-                        }
-                    }
-                }
-            }
-            Shape::Polyhedron(_) => {}
         }
     }
 }

@@ -233,8 +233,5 @@ impl TileTracer<'_> {
 }
 
 fn mesh_of<'a>(scene: &'a Scene, candidate: &Candidate) -> Option<&'a Polyhedron> {
-    match &scene.shapes[candidate.leaf as usize] {
-        Shape::Polyhedron(mesh) => Some(mesh),
-        Shape::Cuboid(_) | Shape::HalfSpace(_) | Shape::Quadric(_) => None,
-    }
+    scene.shapes[candidate.leaf as usize].polyhedron()
 }

@@ -6,7 +6,8 @@ use pulp::{Simd, WithSimd};
 
 use super::block::{BLOCK, Block, Numbers, is_wanted, load, store, zero};
 use crate::lanes::{Lanes, Vec3, Vector};
-use crate::shape::{Keeps, Plane, Profile, Shape, Wall};
+use crate::primitive::Profile;
+use crate::shape::{Keeps, Plane, Shape, Wall};
 
 /// A stretch of each line; empty where `from < to` does not hold.
 #[derive(Clone, Debug)]

@@ -2,7 +2,8 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use crate::shape::U;
+/// The unit of rounding, 2⁻⁵³.
+pub(crate) const U: f64 = 0.5 * f64::EPSILON;
 
 /// A number, and at most how far the true one is from it.
 ///
@@ -11,21 +12,24 @@ use crate::shape::U;
 /// sums and products of positive numbers, each rounded by at most 4 u, for which
 /// [`Rounded::with`] leaves room; and for products too small to be normal numbers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rounded {
-    pub(super) value: f64,
-    pub(super) error: f64,
+pub(crate) struct Rounded {
+    pub(crate) value: f64,
+    pub(crate) error: f64,
 }
 
 impl Rounded {
-    pub(super) const ZERO: Self = Self::exact(0.0);
+    pub(crate) const ZERO: Self = Self::exact(0.0);
+
+    /// π is off by less than half a unit in its last place.
+    pub(crate) const PI: Self = Self { value: std::f64::consts::PI, error: f64::EPSILON };
 
     /// A number without error.
-    pub(super) const fn exact(value: f64) -> Self {
+    pub(crate) const fn exact(value: f64) -> Self {
         Self { value, error: 0.0 }
     }
 
     /// A number that a few operations have made of what was said.
-    pub(super) fn nearly(value: f64) -> Self {
+    pub(crate) fn nearly(value: f64) -> Self {
         Self { value, error: 8.0 * U * value.abs() }
     }
 
@@ -36,7 +40,7 @@ impl Rounded {
     }
 
     /// Where the true number is.
-    pub(super) fn interval(self) -> [f64; 2] {
+    pub(crate) fn interval(self) -> [f64; 2] {
         [(self.value - self.error).next_down(), (self.value + self.error).next_up()]
     }
 }
@@ -76,7 +80,7 @@ impl Mul for Rounded {
 /// S. Oishi, "Accurate Sum and Dot Product", SIAM Journal on Scientific Computing 26(6),
 /// 2005).
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sum {
+pub(crate) struct Sum {
     value: f64,
     lost: f64,
     absolute: f64,
@@ -85,7 +89,7 @@ pub(super) struct Sum {
 }
 
 impl Sum {
-    pub(super) fn add(&mut self, term: Rounded) {
+    pub(crate) fn add(&mut self, term: Rounded) {
         let (x, sum) = (term.value, self.value + term.value);
         self.lost += if self.value.abs() < x.abs() {
             (x - sum) + self.value
@@ -100,7 +104,7 @@ impl Sum {
 
     /// The sum. There is room for the rounding of the sums of errors and of absolute values,
     /// which is at most a thousandth for 2⁴⁰ terms.
-    pub(super) fn total(&self) -> Rounded {
+    pub(crate) fn total(&self) -> Rounded {
         let part = U * self.count;
         let rounding = 2.0 * U * self.value.abs() + 4.0 * part * part * self.absolute;
         Rounded::with(self.value + self.lost, 1.001 * self.error + rounding)
