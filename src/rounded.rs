@@ -23,6 +23,9 @@ impl Rounded {
     /// π is off by less than half a unit in its last place.
     pub(crate) const PI: Self = Self { value: std::f64::consts::PI, error: f64::EPSILON };
 
+    /// A sixth.
+    pub(crate) const SIXTH: Self = Self { value: 1.0 / 6.0, error: f64::EPSILON };
+
     /// A number without error.
     pub(crate) const fn exact(value: f64) -> Self {
         Self { value, error: 0.0 }

@@ -10,7 +10,7 @@ use glam::{DAffine3, DVec3};
 use crate::color::Color;
 use crate::mesh::Mesh;
 use crate::op::Op;
-use crate::primitive::{Cuboid, HalfSpace, Primitive, Profile, Quadric};
+use crate::primitive::{Cuboid, HalfSpace, Primitive, Prism, Profile, Quadric};
 
 /// A solid: cheap to clone, never changed.
 ///
@@ -166,6 +166,18 @@ impl Solid {
     pub fn hyperboloid_of_two_sheets(vertex: f64, slope: f64, height: f64) -> Self {
         let end = 0.5 * height;
         Self::revolved(Profile::TwoSheets { vertex, slope }, -end, end)
+    }
+
+    /// The regular prism about the z-axis from z = 0 to `height`, with corners on a circle of this
+    /// radius, the first on +x.
+    pub fn prism(sides: u32, radius: f64, height: f64) -> Self {
+        Self::prism_between(sides, [radius; 2], [0.0, height])
+    }
+
+    /// What is between two regular polygons about the z-axis, from bottom to top, with corners on
+    /// circles of these radii, the first on +x. One radius may be zero, which makes a pyramid.
+    pub fn prism_between(sides: u32, radii: [f64; 2], ends: [f64; 2]) -> Self {
+        Self::primitive(Primitive::Prism(Prism { sides, radii, ends }))
     }
 
     /// The half-space of points with `normal · p ≤ offset`. It has no bounds, so it is of

@@ -33,8 +33,8 @@ const FACES: [[u32; 3]; 12] = [
 ];
 
 impl Cuboid {
-    pub(crate) fn aabb(&self) -> Aabb {
-        Aabb::new(self.min, self.max)
+    fn corners(&self) -> Vec<DVec3> {
+        Aabb::new(self.min, self.max).corners().to_vec()
     }
 }
 
@@ -66,12 +66,11 @@ impl Describe for Cuboid {
     }
 
     fn extent(&self) -> Extent {
-        Extent::Box(self.aabb())
+        Extent::Corners(self.corners())
     }
 
     fn facets(&self) -> Facets {
-        let points = self.aabb().corners().to_vec();
-        Facets::Polyhedron { points, faces: FACES.to_vec() }
+        Facets::Polyhedron { points: self.corners(), faces: FACES.to_vec() }
     }
 
     fn is_convex(&self) -> bool {

@@ -9,16 +9,12 @@ use crate::aabb::Aabb;
 pub(crate) enum Extent {
     /// There is no end to it but its planes.
     Unbounded,
-    Box(Aabb),
+    /// The hull of its corners.
+    Corners(Vec<DVec3>),
     /// The ball around the origin.
-    Ball {
-        radius: f64,
-    },
+    Ball { radius: f64 },
     /// The hull of discs about the z-axis at two heights.
-    Discs {
-        radii: [f64; 2],
-        ends: [f64; 2],
-    },
+    Discs { radii: [f64; 2], ends: [f64; 2] },
 }
 
 impl Extent {
@@ -26,7 +22,9 @@ impl Extent {
     pub(crate) fn radius(&self) -> f64 {
         match *self {
             Self::Unbounded => f64::INFINITY,
-            Self::Box(bounds) => bounds.min.abs().max(bounds.max.abs()).length(),
+            Self::Corners(ref corners) => {
+                corners.iter().map(|p| p.length()).fold(0.0, f64::max)
+            }
             Self::Ball { radius } => radius.hypot(radius),
             Self::Discs { radii: [a, b], ends: [bottom, top] } => {
                 a.max(b).hypot(bottom.abs().max(top.abs()))
@@ -38,7 +36,9 @@ impl Extent {
     pub(crate) fn coordinates(&self) -> DVec3 {
         match *self {
             Self::Unbounded => DVec3::INFINITY,
-            Self::Box(bounds) => bounds.min.abs().max(bounds.max.abs()),
+            Self::Corners(ref corners) => {
+                corners.iter().fold(DVec3::ZERO, |most, p| most.max(p.abs()))
+            }
             Self::Ball { .. } | Self::Discs { .. } => DVec3::splat(self.radius()),
         }
     }
@@ -49,7 +49,9 @@ impl Extent {
         let rows = [m.row(0), m.row(1), m.row(2)];
         match *self {
             Self::Unbounded => Aabb::ALL,
-            Self::Box(bounds) => bounds.mapped(map),
+            Self::Corners(ref corners) => {
+                Aabb::around(corners.iter().map(|&p| map.transform_point3(p)))
+            }
             Self::Ball { radius } => {
                 let reach = radius * DVec3::from_array(rows.map(DVec3::length));
                 Aabb::new(map.translation - reach, map.translation + reach)

@@ -27,6 +27,7 @@ mod cuboid;
 mod extent;
 mod half_space;
 mod parameter;
+mod prism;
 mod profile;
 mod quadric;
 
@@ -39,6 +40,7 @@ pub use cuboid::Cuboid;
 pub(crate) use extent::Extent;
 pub use half_space::HalfSpace;
 pub use parameter::BadParameter;
+pub use prism::Prism;
 pub use profile::Profile;
 pub use quadric::Quadric;
 
@@ -50,6 +52,8 @@ pub enum Primitive {
     Cuboid(Cuboid),
     /// A solid of revolution about the z-axis, cut at two heights.
     Quadric(Quadric),
+    /// What is between two regular polygons: a prism, a pyramid or a frustum of one.
+    Prism(Prism),
     /// One side of a plane: unbounded, so of use inside an intersection or as what is
     /// subtracted.
     HalfSpace(HalfSpace),
@@ -61,6 +65,7 @@ impl Primitive {
         match self {
             Self::Cuboid(primitive) => primitive,
             Self::Quadric(primitive) => primitive,
+            Self::Prism(primitive) => primitive,
             Self::HalfSpace(primitive) => primitive,
         }
     }

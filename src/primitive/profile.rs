@@ -209,9 +209,6 @@ impl Profile {
     }
 }
 
-/// A sixth.
-const SIXTH: Rounded = Rounded { value: 1.0 / 6.0, error: f64::EPSILON };
-
 /// The integral of the product of two linear functions between two heights.
 fn product(
     bottom: Rounded,
@@ -220,5 +217,5 @@ fn product(
 ) -> Rounded {
     let ([a, b], [c, d]) = (factors(bottom), factors(top));
     let (ends, across) = (a * b + c * d, a * d + b * c);
-    (top - bottom) * SIXTH * (ends + ends + across)
+    (top - bottom) * Rounded::SIXTH * (ends + ends + across)
 }

@@ -38,8 +38,8 @@ struct Near {
     faces: Vec<(usize, bool)>,
 }
 
-/// Where more surfaces than this come together, the point counts as on the boundary without
-/// a look at all the ways in which they can part space.
+/// Where more surfaces than this come together, it is not looked at all the ways in which they can
+/// part space: the point counts as on the boundary unless it does not matter at all what is near.
 const MOST_SURFACES: usize = 8;
 
 impl Tracer<'_> {
@@ -60,9 +60,7 @@ impl Tracer<'_> {
             return Membership::Out;
         };
         let (near, surfaces) = self.near(point, &line);
-        if surfaces > MOST_SURFACES
-            || (surfaces > 0 && self.is_divided(&line, inside, &near, surfaces))
-        {
+        if surfaces > 0 && self.is_divided(&line, inside, &near, surfaces) {
             Membership::On
         } else if inside {
             Membership::In
@@ -102,8 +100,8 @@ impl Tracer<'_> {
         (near, surfaces.len())
     }
 
-    /// Whether the solid is there on one side of the surfaces and not on another, for the line
-    /// that was asked last.
+    /// Whether the solid is, or may be, there on one side of the surfaces and not on another, for
+    /// the line that was asked last.
     fn is_divided(
         &mut self,
         line: &Line,
@@ -111,21 +109,34 @@ impl Tracer<'_> {
         near: &[Near],
         surfaces: usize,
     ) -> bool {
+        let scene = self.scene;
         let passed = self.pass_to_origin(line);
         let found: Vec<bool> = near.iter().map(|n| self.is_in(n.leaf)).collect();
         let mut now = found.clone();
-        let divided = (0..1_u32 << surfaces).any(|sides| {
-            let holds =
-                |&(number, above): &(usize, bool)| (sides >> number & 1 == 1) != above;
-            for (Near { leaf, faces }, now) in near.iter().zip(&mut now) {
-                let wanted = faces.iter().all(holds);
+        let mut differs = |wanted: &dyn Fn(&Near) -> bool| {
+            for (near, now) in near.iter().zip(&mut now) {
+                let wanted = wanted(near);
                 if wanted != *now {
-                    self.flip(*leaf, wanted);
+                    self.flip(near.leaf, wanted);
                     *now = wanted;
                 }
             }
             self.root() != inside
-        });
+        };
+        let divided = if surfaces > MOST_SURFACES {
+            // With complements at its leaves alone a solid has the least points where it has
+            // the fewest of all leaves and complements, and the most where it has all.
+            let is_complement =
+                |near: &Near| scene.literals[near.leaf as usize].complement;
+            differs(&is_complement) || differs(&|near| !is_complement(near))
+        } else {
+            (0..1_u32 << surfaces).any(|sides| {
+                let holds = |&(number, above): &(usize, bool)| {
+                    (sides >> number & 1 == 1) != above
+                };
+                differs(&|near| near.faces.iter().all(holds))
+            })
+        };
         for ((near, now), found) in near.iter().zip(now).zip(found) {
             if now != found {
                 self.flip(near.leaf, found);

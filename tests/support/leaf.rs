@@ -3,6 +3,7 @@
 //! What stands here of a leaf is all that tests of its kind need: it is drawn by lot ([`bounded`],
 //! [`of_lengths`]), aimed at, asked point by point, and crossed in numbers of 200 bits.
 
+use std::f64::consts::PI;
 use std::ops::{Div, Mul, Sub};
 use std::sync::Arc;
 
@@ -24,6 +25,7 @@ pub(crate) enum Leaf {
     Paraboloid { radius: f64, height: f64 },
     OneSheet { waist: f64, radius: f64, height: f64 },
     TwoSheets { vertex: f64, slope: f64, height: f64 },
+    Prism { sides: u32, radii: [f64; 2], height: f64 },
     HalfSpace { normal: DVec3, offset: f64 },
     Mesh(Shared),
 }
@@ -79,6 +81,12 @@ pub(crate) fn bounded() -> impl Strategy<Value = Leaf> {
         1 => (0.2..1.0_f64, 0.3..2.0_f64, length()).prop_map(|(vertex, slope, more)| {
             Leaf::TwoSheets { vertex, slope, height: 2.0 * (vertex + more) }
         }),
+        2 => (3..=8_u32, [length(), length()], length(), 0..4_u32).prop_map(
+            |(sides, [a, b], height, kind)| {
+                let radii = [[a, a], [a, b], [a, 0.0], [0.0, a]][kind as usize];
+                Leaf::Prism { sides, radii, height }
+            }
+        ),
         2 => mesh(),
     ]
 }
@@ -100,7 +108,7 @@ fn mesh() -> impl Strategy<Value = Leaf> {
 
 /// A leaf of any kind that is bounded and has equations, from three lengths.
 pub(crate) fn of_lengths(dice: &mut Dice, [a, b, c]: [f64; 3]) -> Leaf {
-    match dice.below(8) {
+    match dice.below(10) {
         0 => Leaf::Cuboid { min: -dvec3(a, b, c), max: dvec3(c, a, b) },
         1 => Leaf::Ball { radius: a },
         2 => Leaf::Cylinder { radius: a, height: b },
@@ -108,7 +116,9 @@ pub(crate) fn of_lengths(dice: &mut Dice, [a, b, c]: [f64; 3]) -> Leaf {
         4 => Leaf::Frustum { bottom: a, top: 0.0, height: b },
         5 => Leaf::Paraboloid { radius: a, height: b },
         6 => Leaf::OneSheet { waist: a, radius: a + b, height: c },
-        _ => Leaf::TwoSheets { vertex: a, slope: b / c, height: 2.0 * (a + b) },
+        7 => Leaf::TwoSheets { vertex: a, slope: b / c, height: 2.0 * (a + b) },
+        8 => Leaf::Prism { sides: 6, radii: [a, a], height: b },
+        _ => Leaf::Prism { sides: 5, radii: [a, b], height: c },
     }
 }
 
@@ -129,6 +139,9 @@ impl Leaf {
             Self::TwoSheets { vertex, slope, height } => {
                 Solid::hyperboloid_of_two_sheets(*vertex, *slope, *height)
             }
+            Self::Prism { sides, radii, height } => {
+                Solid::prism_between(*sides, *radii, [0.0, *height])
+            }
             Self::HalfSpace { normal, offset } => Solid::half_space(*normal, *offset),
             Self::Mesh(mesh) => Solid::mesh(mesh.0.clone()),
         }
@@ -142,6 +155,17 @@ impl Leaf {
                 .flat_map(|axis| [(-axis, -axis.dot(min)), (axis, axis.dot(max))])
                 .collect(),
             Self::HalfSpace { normal, offset } => vec![(normal, offset)],
+            Self::Prism { sides, radii: [a, b], height } => {
+                let half = PI / f64::from(sides);
+                let side = |i: u32| {
+                    let (sine, cosine) = (half * f64::from(2 * i + 1)).sin_cos();
+                    let apothem = a * half.cos();
+                    (dvec3(cosine, sine, (apothem - b * half.cos()) / height), apothem)
+                };
+                let caps = between(0.0, height).into_iter().zip([a, b]);
+                let caps = caps.filter(|&(_, radius)| radius > 0.0).map(|(cap, _)| cap);
+                caps.chain((0..sides).map(side)).collect()
+            }
             Self::Cylinder { height, .. }
             | Self::Frustum { height, .. }
             | Self::Paraboloid { height, .. } => between(0.0, height),
@@ -177,7 +201,10 @@ impl Leaf {
                 let least = square(of(slope)) * square(of(vertex));
                 Some([square(of(slope)), of(0.0), of(0.0) - least])
             }
-            Self::Cuboid { .. } | Self::HalfSpace { .. } | Self::Mesh(_) => None,
+            Self::Cuboid { .. }
+            | Self::Prism { .. }
+            | Self::HalfSpace { .. }
+            | Self::Mesh(_) => None,
         }
     }
 
@@ -192,6 +219,7 @@ impl Leaf {
             Self::Frustum { bottom, top, height } => bottom + top + height,
             Self::OneSheet { radius, height, .. } => radius + height,
             Self::TwoSheets { vertex, slope, height } => vertex + (1.0 + slope) * height,
+            Self::Prism { radii: [a, b], height, .. } => a.max(b) + height,
             Self::HalfSpace { normal, offset } => (offset / normal.length()).abs(),
             Self::Mesh(ref mesh) => mesh.0.bounds().size().max_element(),
         }
@@ -223,6 +251,21 @@ impl Leaf {
                 .into_iter()
                 .flat_map(|a| [a * *radius, -a * *radius])
                 .collect(),
+            Self::Prism { sides, radii, height } => {
+                let corner = |radius: f64, z: f64, i: u32| {
+                    let (sine, cosine) =
+                        (2.0 * PI * f64::from(i) / f64::from(*sides)).sin_cos();
+                    dvec3(radius * cosine, radius * sine, z)
+                };
+                let around_side = |i: u32| {
+                    let low = [i, i + 1].map(|i| corner(radii[0], 0.0, i));
+                    let high = [i, i + 1].map(|i| corner(radii[1], *height, i));
+                    let middles =
+                        [low, high, [low[0], high[0]]].map(|[a, b]| 0.5 * (a + b));
+                    [low[0], high[0], middles[0], middles[1], middles[2]]
+                };
+                (0..*sides).flat_map(around_side).collect()
+            }
             Self::HalfSpace { normal, offset } => {
                 vec![*normal * (*offset / normal.length_squared())]
             }
@@ -292,7 +335,7 @@ fn mesh_holds(mesh: &Mesh, p: DVec3) -> Option<bool> {
         let across = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
         angle += 2.0 * a.dot(b.cross(c)).atan2(across);
     }
-    let windings = angle / (4.0 * std::f64::consts::PI);
+    let windings = angle / (4.0 * PI);
     assert!((windings - windings.round()).abs() < 1e-3, "{windings} times around {p}");
     Some(windings > 0.5)
 }

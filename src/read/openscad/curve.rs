@@ -102,9 +102,15 @@ impl Round {
         call: &Call<'_>,
         reading: &mut Reading<'_>,
     ) -> Result<Solid, Located> {
-        let solid = match segments(self.radius(), call, reading)? {
-            None => self.curve(),
-            Some(segments) => Solid::mesh(self.mesh(segments, call, reading)?),
+        let solid = match (segments(self.radius(), call, reading)?, self) {
+            (None, _) => self.curve(),
+            // As a mesh, where the very triangles are wanted.
+            (Some(sides), Self::Frustum { radii, heights })
+                if reading.options.curves != Curves::Faceted =>
+            {
+                Solid::prism_between(sides, radii, heights)
+            }
+            (Some(segments), _) => Solid::mesh(self.mesh(segments, call, reading)?),
         };
         Ok(solid.placed(call.place()))
     }
