@@ -63,7 +63,7 @@ impl Surfaces {
                 shape.wall_mut().map(|&mut surface| Face { surface, leaf, face: 0 });
             walls.extend(own);
             if let Shape::Polyhedron(mesh) = shape {
-                meshes.push(Face { surface: mesh.clone(), leaf, face: 0 });
+                meshes.push(Face { surface: Polyhedron::clone(mesh), leaf, face: 0 });
             }
         }
         Self {

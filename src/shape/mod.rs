@@ -93,7 +93,7 @@ pub(crate) trait Surface {
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     Sides(Sides),
-    Polyhedron(Polyhedron),
+    Polyhedron(Box<Polyhedron>),
 }
 
 /// A leaf in its place.
@@ -156,7 +156,7 @@ impl Shape {
         let bounds = Polyhedron::bounds(&frame, &mesh);
         let slack = Slack::of(&frame, chain, mesh.radius(), false);
         let reach = frame.reach(mesh.largest());
-        let shape = Self::Polyhedron(Polyhedron::new(&frame, mesh));
+        let shape = Self::Polyhedron(Polyhedron::new(&frame, mesh).into());
         Ok(Placed { shape, bounds, condition: frame.condition(), slack, reach })
     }
 
@@ -247,7 +247,16 @@ impl Shape {
     pub(crate) fn surface(&self) -> &dyn Surface {
         match self {
             Self::Sides(leaf) => leaf,
-            Self::Polyhedron(leaf) => leaf,
+            Self::Polyhedron(leaf) => &**leaf,
+        }
+    }
+
+    /// How much memory it takes beside its own size and meshes.
+    #[cfg(test)]
+    pub(crate) fn bytes(&self) -> usize {
+        match self {
+            Self::Sides(leaf) => leaf.bytes(),
+            Self::Polyhedron(leaf) => size_of_val(&**leaf),
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::primitive::{Curved, Describe, Extent, Flat, MOST_FACES};
 #[derive(Clone, Debug)]
 pub(crate) struct Sides {
     kind: &'static str,
-    wall: Option<Wall>,
+    wall: Option<Box<Wall>>,
     planes: Box<[Plane]>,
 }
 
@@ -56,7 +56,7 @@ impl Sides {
     }
 
     fn new(primitive: &dyn Describe, frame: &Frame) -> Self {
-        let wall = primitive.wall().map(|wall| Self::wall(frame, wall));
+        let wall = primitive.wall().map(|wall| Self::wall(frame, wall).into());
         let of_plane =
             |Flat { normal, offset, point }| Plane::new(frame, normal, offset, point);
         let planes: Box<[Plane]> = primitive.planes().into_iter().map(of_plane).collect();
@@ -136,17 +136,24 @@ impl Sides {
         }
     }
 
+    /// How much memory it takes beside its own size.
+    #[cfg(test)]
+    pub(super) fn bytes(&self) -> usize {
+        let of_wall = self.wall.as_deref().map_or(0, size_of_val);
+        of_wall + size_of_val(&*self.planes)
+    }
+
     /// What the primitive is called in reports.
     pub(super) fn kind(&self) -> &'static str {
         self.kind
     }
 
     pub(super) fn planes_and_wall(&self) -> (&[Plane], Option<&Wall>) {
-        (&self.planes, self.wall.as_ref())
+        (&self.planes, self.wall.as_deref())
     }
 
     pub(super) fn wall_mut(&mut self) -> Option<&mut Wall> {
-        self.wall.as_mut()
+        self.wall.as_deref_mut()
     }
 
     pub(super) fn planes_mut(&mut self) -> &mut [Plane] {
