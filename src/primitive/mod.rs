@@ -8,10 +8,10 @@
 //! One that is on the inner side of planes and at most one quadric of revolution, as a pyramid or a
 //! shaft with a flat is, takes four files:
 //!
-//! 1. its own, here: its sizes, and what [`Describe`] asks of it. Only its name, the check of its
+//! 1. its own, here: its sizes, and what `Describe` asks of it. Only its name, the check of its
 //!    sizes, its faces and its extent have to be said; who knows more says more, and gets exact volumes,
 //!    facets, hulls;
-//! 2. this one: its variant of [`Primitive`], and its arm in [`Primitive::describe`];
+//! 2. this one: its variant of [`Primitive`], and its arm in `Primitive::describe`;
 //! 3. its maker, in `solid.rs`;
 //! 4. `tests/support/leaf.rs`: its formula once more. Then the random trees, the exact arithmetic and the
 //!    laws that the tests hold against all leaves hold it to them too.
