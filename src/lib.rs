@@ -111,6 +111,7 @@ mod scene;
 mod section;
 mod shape;
 mod shown;
+mod similar;
 mod solid;
 pub mod write;
 

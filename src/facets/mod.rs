@@ -12,6 +12,7 @@ mod flatten;
 mod hull;
 #[cfg(test)]
 mod hull_tests;
+mod in_phase;
 mod longest;
 mod parts;
 mod quickhull;

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::in_phase;
 use super::longest::longest;
 use super::{Faceted, FacetsError, boundary};
 use crate::aabb::Aabb;
@@ -133,7 +134,7 @@ impl Making<'_> {
                 Facets::Ball { radius } => {
                     let segments = (self.fine.ball)(radius * longest(&map.matrix3));
                     self.count(round::ball_triangles(segments))?;
-                    mapped(&ball(segments, radius)?, map)?
+                    mapped(&ball(segments, radius)?, &in_phase::ball(map))?
                 }
                 Facets::Frustum { radii, ends } => {
                     // Nothing moves along the axis, so it does not matter how that is stretched.
@@ -143,7 +144,8 @@ impl Making<'_> {
                         (self.fine.circle)(radii[0].max(radii[1]) * longest(&flat));
                     self.count(round::frustum_triangles(segments))?;
                     let radii = radii.map(|r| r * with_area(segments));
-                    mapped(&round::frustum(segments, radii, ends)?, map)?
+                    let map = in_phase::circle(map, segments);
+                    mapped(&round::frustum(segments, radii, ends)?, &map)?
                 }
                 Facets::HalfSpace { normal, offset } => {
                     self.count(12)?;

@@ -25,7 +25,6 @@ mod options;
 mod outline;
 mod program;
 mod scad;
-mod similar;
 mod stl;
 mod svg;
 mod threemf;

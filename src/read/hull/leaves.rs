@@ -2,11 +2,11 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::super::similar;
 use super::balls::Ball;
 use crate::facets::{self, FacetsError, Fine};
 use crate::op::Op;
 use crate::primitive::Facets;
+use crate::similar;
 use crate::solid::{Kind, Solid};
 
 /// A part of a union.

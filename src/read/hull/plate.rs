@@ -4,8 +4,8 @@
 use glam::{DAffine3, DMat3, DVec2, DVec3, Vec3Swizzles};
 
 use super::super::outline::{Disc, Extrusion, hull_of_discs};
-use super::super::similar;
 use super::leaves::Leaf;
+use crate::similar;
 use crate::solid::Solid;
 
 /// The hull of leaves that are upright where one of their cylinders is; `None` of others, and of all

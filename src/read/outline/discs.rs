@@ -8,9 +8,9 @@
 
 use glam::{DAffine2, DVec2};
 
-use super::super::similar::plane_scale;
 use super::{Kind, Outline, Shape, hull};
 use crate::op::Op;
+use crate::similar::plane_scale;
 
 /// The most tests of a disc against a tangent, which take a second or so.
 const MOST_TESTS: usize = 100_000_000;

@@ -6,9 +6,21 @@ use glam::{DMat2, DMat3, DVec3};
 /// wrong by 5e-7 each: these are a few of them, one within the other.
 const DIGITS: f64 = 5e-6;
 
+/// The same of one that nobody has printed.
+const ROUNDING: f64 = 1e-13;
+
 /// What a map multiplies lengths by if it is a similarity (a rotation, a mirror, an even scale or some
 /// of these), to the digits that are printed.
-pub(super) fn scale(map: &DMat3) -> Option<f64> {
+pub(crate) fn scale(map: &DMat3) -> Option<f64> {
+    scale_within(map, DIGITS)
+}
+
+/// The same but for rounding.
+pub(crate) fn exact_scale(map: &DMat3) -> Option<f64> {
+    scale_within(map, ROUNDING)
+}
+
+fn scale_within(map: &DMat3, off_by: f64) -> Option<f64> {
     let scale = map.determinant().abs().cbrt();
     let products = map.transpose() * *map / (scale * scale);
     let off = products - DMat3::IDENTITY;
@@ -17,11 +29,11 @@ pub(super) fn scale(map: &DMat3) -> Option<f64> {
         .into_iter()
         .fold(0.0, f64::max);
     // Lengths are off by half of what their squares are. What is not a number is refused.
-    (scale > 0.0 && scale.is_finite() && most <= 2.0 * DIGITS).then_some(scale)
+    (scale > 0.0 && scale.is_finite() && most <= 2.0 * off_by).then_some(scale)
 }
 
 /// The same in the plane.
-pub(super) fn plane_scale(map: &DMat2) -> Option<f64> {
+pub(crate) fn plane_scale(map: &DMat2) -> Option<f64> {
     let scale_of_z = map.determinant().abs().sqrt();
     scale(&DMat3::from_cols(
         map.x_axis.extend(0.0),
