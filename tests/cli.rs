@@ -502,6 +502,39 @@ fn trees_larger_than_allowed_are_refused() {
 }
 
 #[test]
+fn what_is_too_large_for_numbers_is_refused() {
+    let desk = Desk::new();
+    let cubes = |e: i32| {
+        desk.put("cube.csg", &format!("cube(size = [1e{e}, 1e{e}, 1e{e}]);"));
+        desk.put("half.csg", &format!("cube(size = [1e{e}, 1e{e}, 5e{}]);", e - 1));
+    };
+    for exponent in [-120, 120] {
+        cubes(exponent);
+        for args in [
+            &["volume", "cube.csg"][..],
+            &["measure", "cube.csg"],
+            &["compare", "cube.csg", "half.csg"],
+            &["overlaps", "cube.csg"],
+        ] {
+            let done = desk.run(args);
+            assert_eq!(done.code, 2, "{args:?}: {}", done.out);
+            let message = format!("the model is 1e{exponent} wide: ");
+            assert!(done.err.contains(&message), "{args:?}: {}", done.err);
+            assert!(done.err.contains("Scale it"), "{args:?}: {}", done.err);
+        }
+    }
+    for exponent in [-90, 90] {
+        cubes(exponent);
+        let done = desk.run(&["volume", "cube.csg"]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        assert_eq!(desk.run(&["measure", "cube.csg"]).code, 2);
+        let done = desk.run(&["compare", "cube.csg", "half.csg"]);
+        assert_eq!(done.code, 1, "{}", done.err);
+        assert!(done.out.starts_with("different"), "{}", done.out);
+    }
+}
+
+#[test]
 fn wrong_usage_is_code_2() {
     let desk = Desk::new();
     for args in [

@@ -3,6 +3,8 @@
 //! All rays have coordinates that are exact in binary, so the right answers are known to
 //! the last digit. u = 2⁻⁵³ is the rounding unit.
 
+#![expect(clippy::float_cmp, reason = "scaling by powers of two rounds nothing")]
+
 #[expect(dead_code, reason = "extremes are chosen, not drawn by lot")]
 mod support;
 
@@ -10,7 +12,7 @@ use glam::{DAffine3, DVec3, dvec3};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use solidray::{Ray, Scene, Solid};
+use solidray::{Ray, Scene, Solid, measure, unwatched};
 use support::model::Model;
 use support::strategies::{aims, direction, model, place, placed_leaf};
 use support::{along_x, ends, ends_in, scene, spans};
@@ -250,6 +252,51 @@ fn n14_scenes_scaled_by_a_power_of_two_give_the_same_bits() {
                 let image = Ray::new(factor * ray.origin, factor * ray.dir);
                 assert_eq!(ends_in(&plain, &ray), ends_in(&scaled, &image), "{factor:e}");
             }
+        }
+    }
+}
+
+/// Squares of volumes are no numbers long before volumes are none.
+#[test]
+fn n14_measures_scale_by_powers_of_two_to_the_bit() {
+    let sampling = measure::Sampling { rel_tol: 1e-3, ..measure::Sampling::default() };
+    let part = Solid::cuboid(dvec3(3.0, 2.0, 1.0)) - Solid::ball(0.9)
+        + Solid::frustum(1.0, 0.3, 2.0).rotated(dvec3(1.0, 2.0, 3.0), 0.7);
+    let other = part.clone() - Solid::cylinder(0.3, 5.0);
+    let volume = measure::volume(&scene(&part), &sampling);
+    let whole = measure::properties(&scene(&part), &sampling, &unwatched);
+    let compared =
+        measure::compare(&part, &other, 1e-3, &sampling, &unwatched).expect("solids");
+    assert!(volume.target_met && volume.half_width() > 0.0);
+    for power in [-330, -190, 190, 330] {
+        let factor = 2.0_f64.powi(power);
+        let grown = |solid: &Solid| solid.clone().scaled(DVec3::splat(factor));
+        let by = |k: i32, x: f64| x * 2.0_f64.powi(k * power);
+        let found = measure::volume(&scene(&grown(&part)), &sampling);
+        assert_eq!(found.value, by(3, volume.value), "{power}");
+        assert_eq!(found.interval, volume.interval.map(|x| by(3, x)), "{power}");
+        let found =
+            measure::compare(&grown(&part), &grown(&other), 1e-3, &sampling, &unwatched)
+                .expect("solids");
+        let none = compared.b_minus_a.interval.map(|x| by(3, x));
+        assert_eq!(found.b_minus_a.interval, none, "{power}");
+        assert_eq!(
+            found.difference.interval,
+            compared.difference.interval.map(|x| by(3, x)),
+            "{power}"
+        );
+        assert_eq!(found.iou, compared.iou, "{power}");
+        if power.abs() < 200 {
+            let found = measure::properties(&scene(&grown(&part)), &sampling, &unwatched);
+            assert_eq!(
+                found.area.interval,
+                whole.area.interval.map(|x| by(2, x)),
+                "{power}"
+            );
+            let moment = |p: &measure::Properties| {
+                p.body.as_ref().expect("it has mass").principal[0].moment.interval
+            };
+            assert_eq!(moment(&found), moment(&whole).map(|x| by(5, x)), "{power}");
         }
     }
 }

@@ -14,7 +14,7 @@ use super::interrupt::interrupted;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, point};
 use super::pieces::{By, pieces};
-use super::sampling::SamplingArgs;
+use super::sampling::{SamplingArgs, check_range};
 use super::{Answer, Global};
 
 /// Find pairs of parts that share volume: how much, how deep, and where
@@ -61,7 +61,8 @@ impl Overlaps {
     ) -> anyhow::Result<Answer> {
         let start = Instant::now();
         let solid = self.reading.read(&self.file, global)?.solid;
-        self.reading.compile(&self.file, &solid)?;
+        let bounds = self.reading.compile(&self.file, &solid)?.bounds();
+        check_range(&bounds, 3, "volumes")?;
         let (names, solids) = self.pieces(&solid);
         let meter = Meter::interruptible(global, "comparing")?;
         let watch = |rays| meter.step(rays);

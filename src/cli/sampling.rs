@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
+use anyhow::bail;
 use clap::Args;
+use solidray::Aabb;
 use solidray::measure::Sampling;
 
 /// The limits that commands which measure share.
@@ -37,6 +39,22 @@ impl SamplingArgs {
             seed: self.seed,
         }
     }
+}
+
+/// Refuses what is so large or so small that a power of its size is no number.
+pub(super) fn check_range(bounds: &Aabb, power: i32, what: &str) -> anyhow::Result<()> {
+    /// Numbers go from 1e-308 to 1e308; sums need some room.
+    const NUMBERS: std::ops::RangeInclusive<f64> = 1e-300..=1e300;
+    let size = bounds.size().max_element();
+    let largest = size.powi(power);
+    if size > 0.0 && size.is_finite() && !NUMBERS.contains(&largest) {
+        let [low, high] =
+            [NUMBERS.start(), NUMBERS.end()].map(|x| x.powf(1.0 / f64::from(power)));
+        bail!(
+            "the model is {size:e} wide: {what} of what is not from {low:.0e} to {high:.0e} wide are no numbers. Scale it"
+        );
+    }
+    Ok(())
 }
 
 /// A finite number that is not below zero.

@@ -12,7 +12,7 @@ use solidray::measure::{self, Method};
 use super::input::Reading;
 use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, uncertain_in_words};
-use super::sampling::SamplingArgs;
+use super::sampling::{SamplingArgs, check_range};
 use super::{Answer, Global};
 
 /// Measure the volume, with a 95 % interval
@@ -78,6 +78,7 @@ impl Volume {
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
         let (loaded, solid) = self.reading.load_and_keep(&self.file, global)?;
+        check_range(&loaded.scene.bounds(), 3, "volumes")?;
         let sampling = self.sampling.meant();
         let start = Instant::now();
         let meter = Meter::interruptible(global, "measuring")?;

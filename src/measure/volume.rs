@@ -141,7 +141,7 @@ fn of_one(
             let hopeless = rays >= sampling.max_rays / PATIENCE
                 && round.replicates.iter().all(|sum| sum.hits == 0);
             let now = estimate(beam, round, rays, sampling, |sum| *sum);
-            if hopeless {
+            if hopeless || !now.value.is_finite() {
                 Next::Nothing
             } else {
                 wanted(distance(&now, sampling), round.replicates.len()).into()

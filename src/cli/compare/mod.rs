@@ -30,7 +30,7 @@ use super::meter::Meter;
 use super::output::{self, EstimateJson, in_words, point};
 use super::render::CameraArgs;
 use super::report::note;
-use super::sampling::{SamplingArgs, positive};
+use super::sampling::{SamplingArgs, check_range, positive};
 use super::typed::Typed;
 use super::{Answer, Global};
 use camera::near;
@@ -106,6 +106,9 @@ impl Compare {
             reading.compile(&self.a, &a)?.bounds(),
             reading.compile(&self.b, &b)?.bounds(),
         ];
+        for bounds in &bounds {
+            check_range(bounds, 3, "volumes")?;
+        }
         let start = Instant::now();
         let meter = Meter::interruptible(global, "comparing")?;
         let sampling = self.sampling.meant.meant();

@@ -17,7 +17,7 @@ use super::input::Reading;
 use super::interrupt::interrupted;
 use super::meter::Meter;
 use super::pieces::{By, pieces};
-use super::sampling::SamplingArgs;
+use super::sampling::{SamplingArgs, check_range};
 use super::{Answer, Global, output};
 use json::{PartJson, Report};
 pub(super) use merge::Merge;
@@ -79,6 +79,7 @@ impl Measure {
         let start = Instant::now();
         let solid = self.reading.read(&self.file, global)?.solid;
         let scene = self.reading.compile(&self.file, &solid)?;
+        check_range(&scene.bounds(), 5, "moments of inertia")?;
         let parts = pieces(&solid, self.by);
         let densities = self.densities(&parts)?;
         let meter = Meter::interruptible(global, "measuring")?;

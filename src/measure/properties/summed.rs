@@ -11,7 +11,7 @@ use crate::aabb::Aabb;
 use crate::measure::beam::Beam;
 use crate::measure::lattice::Sampling;
 use crate::measure::shares::ROOM;
-use crate::measure::spread::{ENOUGH_HITS, most_hits, student};
+use crate::measure::spread::{ENOUGH_HITS, most_hits, root_of_squares, student};
 
 /// Independent estimates of integrals, and how much each run counts.
 pub(super) struct Summed {
@@ -171,12 +171,12 @@ impl Summed {
     /// Runs are independent, so their variances add up. The quantile is that of each run:
     /// that of the sum would be smaller, for it has more degrees of freedom.
     fn half_width(&self, of: impl Fn(&Integrals) -> f64) -> f64 {
-        let squares = self.runs.iter().map(|(weight, rows)| {
+        let half_width = |(weight, rows): &(f64, Vec<Integrals>)| {
             let numbers: Vec<f64> = rows.iter().map(&of).collect();
-            let (_, half_width) = student(&numbers);
-            (weight * half_width) * (weight * half_width)
-        });
-        squares.sum::<f64>().sqrt()
+            weight * student(&numbers).1
+        };
+        let half_widths: Vec<f64> = self.runs.iter().map(half_width).collect();
+        root_of_squares(half_widths.into_iter(), (1.0, 1.0))
     }
 
     /// A number that depends linearly on the integrals, as near to it as `target`, and by how
