@@ -70,7 +70,7 @@
 //! said. [`Tracer::uncertain`] counts spans that are thinner than that. [`Tracer::classify`]
 //! tells points that are as near to the boundary from those inside and outside.
 //! [`Tracer::next_hit`] starts a ray where another ended. How errors grow towards the
-//! extremes, for each primitive, is drawn by `cargo run --release --example stability`.
+//! extremes, for six kinds of solids, is drawn by `cargo run --release --example stability`.
 //!
 //! # Features
 //!

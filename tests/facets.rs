@@ -1,15 +1,19 @@
 //! Facets: the polyhedra that stand for curves, and the surfaces of solids as meshes.
 
+#[expect(dead_code, reason = "facets need no rays")]
+mod support;
+
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::{DAffine3, DVec3, dvec3};
 use proptest::prelude::*;
-use solidray::facets::{Faceted, FacetsError, boundary, faceted};
+use solidray::facets::{self, Faceted, FacetsError, boundary, faceted};
 use solidray::measure::{self, Sampling};
 use solidray::read::{self, Curves, Format, ReadOptions};
 use solidray::{Mesh, Op, Scene, Solid, unwatched};
+use support::leaf;
 
 const MANY: u64 = 1 << 20;
 
@@ -151,6 +155,38 @@ proptest! {
             let found = measure::volume(&scene, &sampling);
             let room = 3.0 * found.half_width() + 1e-9;
             prop_assert!((found.value - enclosed).abs() <= room, "{found:?} {enclosed}");
+        }
+    }
+
+    /// What is said of a leaf's facets is what is said of its faces, its bounds and its volume.
+    #[test]
+    fn facets_of_leaves_enclose_them(leaf in leaf::bounded()) {
+        const TOLERANCE: f64 = 0.01;
+        let solid = leaf.solid();
+        let mesh = match facets::surface(&solid, TOLERANCE, MANY, &unwatched) {
+            Ok(mesh) => mesh.expect("leaves are not empty"),
+            Err(FacetsError::NoFacets(_)) => return Ok(()),
+            Err(error) => panic!("{error}"),
+        };
+        let is_polyhedron = leaf.wall::<f64>().is_none();
+        let scene = Scene::compile(&solid).expect("a leaf");
+        let room = if is_polyhedron { 1e-12 } else { TOLERANCE };
+        for (a, b) in [
+            (mesh.bounds().min, scene.bounds().min),
+            (mesh.bounds().max, scene.bounds().max),
+        ] {
+            prop_assert!((a - b).abs().max_element() <= room, "{a} {b}");
+        }
+        for &point in mesh.points() {
+            let outside = leaf.planes().into_iter().map(|(normal, offset)| {
+                (normal.dot(point) - offset) / normal.length()
+            });
+            prop_assert!(outside.fold(f64::NEG_INFINITY, f64::max) <= room, "{point}");
+        }
+        if let Some(volume) = measure::exact(&solid) {
+            let room = if is_polyhedron { 1e-12 } else { TOLERANCE };
+            let off = (mesh.volume() / volume.value - 1.0).abs();
+            prop_assert!(off <= room, "{} {volume:?}", mesh.volume());
         }
     }
 

@@ -3,7 +3,9 @@
 //! # To add a primitive
 //!
 //! Ask first whether it is a combination of those there are. Then a maker in `solid.rs` is all that
-//! it takes, and a keyword in the reader if a format has one: a capsule is a cylinder and two balls.
+//! it takes, and a keyword in the reader if a format has one: a capsule is a cylinder and two balls. What
+//! is met often is worth a kind of its own: one leaf instead of several, exact bounds and volume, and
+//! a name in reports.
 //!
 //! One that is on the inner side of planes and at most one quadric of revolution, as a pyramid or a
 //! shaft with a flat is, takes four files:
@@ -11,17 +13,20 @@
 //! 1. its own, here: its sizes, and what `Describe` asks of it. Only its name, the check of its
 //!    sizes, its faces and its extent have to be said; who knows more says more, and gets exact volumes,
 //!    facets, hulls;
-//! 2. this one: its variant of [`Primitive`], and its arm in `Primitive::describe`;
+//! 2. this one: its module, its variant of [`Primitive`], and its arm in `Primitive::describe`;
 //! 3. its maker, in `solid.rs`;
-//! 4. `tests/support/leaf.rs`: its formula once more. Then the random trees, the exact arithmetic and the
-//!    laws that the tests hold against all leaves hold it to them too.
+//! 4. `tests/support/leaf.rs`: its formula once more. Then it is in the random trees, and the exact
+//!    arithmetic and the laws that the tests hold against leaves are held against its surfaces, its volume
+//!    and its facets too. What sizes it refuses is for a test of its own, as in `tests/prisms.rs`.
 //!
 //! There is nothing to do for rays, pictures, points and measures: `shape/sides.rs` makes leaves of
 //! planes and walls, whichever they are. [`Profile`] is the closed list of quadrics of revolution.
+//! If a format has it, there is a keyword in `src/read` besides. The fuzz target `tree` and the programs in
+//! `benches/peers` have lists of their own, which may do without.
 //!
 //! A surface of another degree (a torus, say) is a new kind of leaf: a solver, with bounds for its
-//! rounding, beside `shape/sides.rs` and `shape/polyhedron.rs`, and answers to what the list in
-//! `shape/mod.rs` is asked.
+//! rounding, beside `shape/sides.rs` and `shape/polyhedron.rs`, and answers to what the head of
+//! `shape/mod.rs` lists.
 
 mod cuboid;
 mod extent;
@@ -97,7 +102,8 @@ pub(crate) trait Describe: fmt::Debug {
     /// The first parameter that is not finite or not in its range.
     fn check(&self) -> Result<(), BadParameter>;
 
-    /// Its flat faces, [`MOST_FACES`] with the wall at most: it is on the inner side of all of them.
+    /// Its flat faces: it is on the inner side of all of them. They are numbered in this order, from 1 if
+    /// there is a wall, which is 0, and else from 0; [`MOST_FACES`] there may be with the wall.
     fn planes(&self) -> Vec<Flat>;
 
     /// The quadric that it is inside of as well.
@@ -105,7 +111,8 @@ pub(crate) trait Describe: fmt::Debug {
         None
     }
 
-    /// Where it is.
+    /// What it is within: the bounds of models are made of it, so it should not be larger than need
+    /// be.
     fn extent(&self) -> Extent;
 
     /// What facets stand for it. Without an answer there are no meshes of it, nor hulls.
@@ -123,9 +130,10 @@ pub(crate) trait Describe: fmt::Debug {
         None
     }
 
-    /// The numbers that place its faces on each axis, as they are said and as they may have been
-    /// said, so that how many digits they have tells how exact they are. Without an answer they
-    /// count as exact.
+    /// The sizes that move its faces along each axis, and what files may have said instead of them (a
+    /// height for the difference of two ends): where OpenSCAD has printed them with six digits they are
+    /// off by half of the sixth, and a weld makes up for that. Without an answer they count as exact, as
+    /// do those of what no file has.
     fn lengths(&self) -> [Vec<f64>; 3] {
         [const { Vec::new() }; 3]
     }
@@ -140,7 +148,8 @@ pub(crate) struct Flat {
     /// Of any length.
     pub(crate) normal: DVec3,
     pub(crate) offset: f64,
-    /// A point on it, with as few digits as there are.
+    /// A point on it: one whose coordinates were said, a corner perhaps. Where a map makes the plane square
+    /// to an axis, its place is this point's.
     pub(crate) point: DVec3,
 }
 

@@ -16,7 +16,7 @@ pub(super) fn finite(parameter: &'static str, value: f64) -> Result<(), BadParam
 /// The smallest and the largest size of a quadric: their squares are numbers still.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-140..=1e140;
 
-/// A size of a quadric.
+/// A size of a quadric. What has planes alone has sizes that are [`positive`].
 pub(super) fn size(parameter: &'static str, value: f64) -> Result<(), BadParameter> {
     if SIZES.contains(&value) { Ok(()) } else { Err(BadParameter { parameter, value }) }
 }

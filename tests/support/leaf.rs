@@ -1,7 +1,9 @@
 //! Leaves as formulas that know nothing of the kernel, and what tests need to know of each.
 //!
-//! What stands here of a leaf is all that tests of its kind need: it is drawn by lot ([`bounded`],
-//! [`of_lengths`]), aimed at, asked point by point, and crossed in numbers of 200 bits.
+//! What stands here of a leaf is all that tests of its kind need: it is drawn by lot, aimed at, asked
+//! point by point, crossed in numbers of 200 bits, and meshed. A leaf of a new kind is a variant of
+//! [`Leaf`], the arms that the compiler asks for, and a line in [`bounded`] and in [`of_lengths`], for
+//! which nobody asks. It changes what all tests draw after it.
 
 use std::f64::consts::PI;
 use std::ops::{Div, Mul, Sub};
@@ -108,18 +110,19 @@ fn mesh() -> impl Strategy<Value = Leaf> {
 
 /// A leaf of any kind that is bounded and has equations, from three lengths.
 pub(crate) fn of_lengths(dice: &mut Dice, [a, b, c]: [f64; 3]) -> Leaf {
-    match dice.below(10) {
-        0 => Leaf::Cuboid { min: -dvec3(a, b, c), max: dvec3(c, a, b) },
-        1 => Leaf::Ball { radius: a },
-        2 => Leaf::Cylinder { radius: a, height: b },
-        3 => Leaf::Frustum { bottom: a, top: b, height: c },
-        4 => Leaf::Frustum { bottom: a, top: 0.0, height: b },
-        5 => Leaf::Paraboloid { radius: a, height: b },
-        6 => Leaf::OneSheet { waist: a, radius: a + b, height: c },
-        7 => Leaf::TwoSheets { vertex: a, slope: b / c, height: 2.0 * (a + b) },
-        8 => Leaf::Prism { sides: 6, radii: [a, a], height: b },
-        _ => Leaf::Prism { sides: 5, radii: [a, b], height: c },
-    }
+    let all = [
+        Leaf::Cuboid { min: -dvec3(a, b, c), max: dvec3(c, a, b) },
+        Leaf::Ball { radius: a },
+        Leaf::Cylinder { radius: a, height: b },
+        Leaf::Frustum { bottom: a, top: b, height: c },
+        Leaf::Frustum { bottom: a, top: 0.0, height: b },
+        Leaf::Paraboloid { radius: a, height: b },
+        Leaf::OneSheet { waist: a, radius: a + b, height: c },
+        Leaf::TwoSheets { vertex: a, slope: b / c, height: 2.0 * (a + b) },
+        Leaf::Prism { sides: 6, radii: [a, a], height: b },
+        Leaf::Prism { sides: 5, radii: [a, b], height: c },
+    ];
+    all[dice.below(all.len())].clone()
 }
 
 impl Leaf {
@@ -147,7 +150,7 @@ impl Leaf {
         }
     }
 
-    /// The planes that it is on the inner side of: `normal · p ≤ offset`.
+    /// The planes that it is on the inner side of, in the order of its faces: `normal · p ≤ offset`.
     pub(crate) fn planes(&self) -> Vec<(DVec3, f64)> {
         match *self {
             Self::Cuboid { min, max } => DVec3::AXES
@@ -208,7 +211,7 @@ impl Leaf {
         }
     }
 
-    /// A length of the leaf's own order.
+    /// No point is farther than this from the leaf's own origin, nor by orders nearer are all.
     pub(crate) fn size(&self) -> f64 {
         match *self {
             Self::Cuboid { min, max } => min.length().max(max.length()),

@@ -53,7 +53,7 @@ fn direction(bytes: &mut Unstructured) -> Result<DVec3> {
 }
 
 fn leaf(bytes: &mut Unstructured) -> Result<Leaf> {
-    Ok(match bytes.int_in_range(0..=6)? {
+    Ok(match bytes.int_in_range(0..=7)? {
         0 => {
             let min = place(bytes)?;
             Leaf::Cuboid { min, max: min + three(bytes, length)? }
@@ -70,6 +70,12 @@ fn leaf(bytes: &mut Unstructured) -> Result<Leaf> {
         5 => {
             let (waist, more) = (length(bytes)?, within(bytes, 0.0, 2.0)?);
             Leaf::OneSheet { waist, radius: waist + more, height: length(bytes)? }
+        }
+        6 => {
+            let sides = bytes.int_in_range(3..=8)?;
+            let [a, b] = [length(bytes)?, length(bytes)?];
+            let radii = *bytes.choose(&[[a, a], [a, b], [a, 0.0], [0.0, a]])?;
+            Leaf::Prism { sides, radii, height: length(bytes)? }
         }
         _ => {
             let (vertex, slope) = (within(bytes, 0.2, 1.0)?, within(bytes, 0.3, 2.0)?);
