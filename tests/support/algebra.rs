@@ -51,13 +51,15 @@ pub(crate) const FAR: f64 = 4096.0;
 /// the double complement and what is subtracted from itself.
 pub(crate) fn equal_pairs(a: &Model, b: &Model, c: &Model) -> Vec<(Model, Model)> {
     let (abc, nothing) = ([a, b, c].map(Model::clone), || union([]));
+    // Surfaces of b that coincide with those of a but for rounding have to be there on both sides.
+    let a_beside_b = || or(a, &minus(b, b));
     vec![
         (or(a, b), or(b, a)),
         (and(a, b), and(b, a)),
         (or(a, a), a.clone()),
         (and(a, a), a.clone()),
-        (or(a, &and(a, b)), a.clone()),
-        (and(a, &or(a, b)), a.clone()),
+        (or(a, &and(a, b)), a_beside_b()),
+        (and(a, &or(a, b)), a_beside_b()),
         (minus(a, &minus(a, b)), and(a, b)),
         (minus(c, &minus(c, &minus(c, a))), minus(c, a)),
         (minus(c, &or(a, b)), and(&minus(c, a), &minus(c, b))),
