@@ -523,6 +523,11 @@ fn what_is_too_large_for_numbers_is_refused() {
             assert!(done.err.contains("Scale it"), "{args:?}: {}", done.err);
         }
     }
+    desk.put("long.csg", "cube(size = [1e110, 1, 1]);");
+    assert_eq!(desk.run(&["volume", "long.csg"]).code, 0);
+    assert_eq!(desk.run(&["measure", "long.csg"]).code, 2);
+    desk.put("long.csg", "cube(size = [1e70, 1, 1]);");
+    assert_eq!(desk.run(&["measure", "long.csg"]).code, 0);
     for exponent in [-90, 90] {
         cubes(exponent);
         let done = desk.run(&["volume", "cube.csg"]);

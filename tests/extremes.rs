@@ -12,7 +12,7 @@ use glam::{DAffine3, DVec3, dvec3};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use solidray::{Ray, Scene, Solid, measure, unwatched};
+use solidray::{Op, Ray, Scene, Solid, measure, unwatched};
 use support::model::Model;
 use support::strategies::{aims, direction, model, place, placed_leaf};
 use support::{along_x, ends, ends_in, scene, spans};
@@ -263,18 +263,28 @@ fn n14_measures_scale_by_powers_of_two_to_the_bit() {
     let part = Solid::cuboid(dvec3(3.0, 2.0, 1.0)) - Solid::ball(0.9)
         + Solid::frustum(1.0, 0.3, 2.0).rotated(dvec3(1.0, 2.0, 3.0), 0.7);
     let other = part.clone() - Solid::cylinder(0.3, 5.0);
+    // Far apart, so that each is measured in a box of its own.
+    let apart = [0.0, 1000.0, 3000.0].map(|x| part.clone().translated(x * DVec3::X));
+    let apart = Solid::boolean(Op::Union, apart);
+    let volumes = measure::volume(&scene(&apart), &sampling);
     let volume = measure::volume(&scene(&part), &sampling);
     let whole = measure::properties(&scene(&part), &sampling, &unwatched);
     let compared =
         measure::compare(&part, &other, 1e-3, &sampling, &unwatched).expect("solids");
     assert!(volume.target_met && volume.half_width() > 0.0);
-    for power in [-330, -190, 190, 330] {
+    for power in [-300, -190, 190, 300] {
         let factor = 2.0_f64.powi(power);
         let grown = |solid: &Solid| solid.clone().scaled(DVec3::splat(factor));
         let by = |k: i32, x: f64| x * 2.0_f64.powi(k * power);
         let found = measure::volume(&scene(&grown(&part)), &sampling);
         assert_eq!(found.value, by(3, volume.value), "{power}");
         assert_eq!(found.interval, volume.interval.map(|x| by(3, x)), "{power}");
+        let found = measure::volume(&scene(&grown(&apart)), &sampling);
+        // One more map moves the boxes by a rounding.
+        for (found, plain) in found.interval.into_iter().zip(volumes.interval) {
+            assert!((found / by(3, plain) - 1.0).abs() < 1e-14, "{power}");
+        }
+        assert_eq!((found.rays, found.target_met), (volumes.rays, true), "{power}");
         let found =
             measure::compare(&grown(&part), &grown(&other), 1e-3, &sampling, &unwatched)
                 .expect("solids");

@@ -3,11 +3,12 @@
 #[expect(dead_code, reason = "prisms need no trees")]
 mod support;
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
 
-use glam::{DAffine3, DVec3, dvec3};
+use glam::{DAffine3, DMat3, DVec3, dvec3};
+use solidray::facets::{self, FacetsError};
 use solidray::primitive::{Primitive, Prism};
-use solidray::{CompileError, Ray, Scene, Solid, facets, measure};
+use solidray::{CompileError, CompileOptions, Ray, Scene, Solid, measure, unwatched};
 use support::dice::Dice;
 use support::{ends_in, scene};
 
@@ -94,6 +95,46 @@ fn volumes_are_those_of_their_polygons() {
     }
 }
 
+/// Where a prism of four sides is turned to the axes it is a box, and cuts as one.
+#[test]
+fn a_square_prism_along_the_axes_is_a_box() {
+    let cube = Solid::cuboid(dvec3(10.0, 10.0, 10.0));
+    let turn = FRAC_1_SQRT_2
+        * DMat3::from_cols(
+            dvec3(1.0, 1.0, 0.0),
+            dvec3(-1.0, 1.0, 0.0),
+            SQRT_2 * DVec3::Z,
+        );
+    let cutter = Solid::prism_between(4, [50.0_f64.sqrt(); 2], [-10.0, 10.0])
+        .mapped(DAffine3::from_mat3(turn));
+    let bounds = scene(&cutter).bounds();
+    assert!((bounds.max - dvec3(5.0, 5.0, 10.0)).abs().max_element() < 1e-14);
+    let options = CompileOptions { weld: 1e-4, ..CompileOptions::default() };
+    let rest = Scene::compile_with(&(cube - cutter), &options).expect("it compiles");
+    assert!(rest.bounds().is_empty() || rest.bounds().size().min_element() == 0.0);
+}
+
+/// Nothing is made of sizes that are not right, however large the mesh would be.
+#[test]
+fn facets_are_not_made_of_bad_sizes() {
+    for (sides, radius, height) in [
+        (u32::MAX, 1.0, 1.0),
+        (2, 1.0, 1.0),
+        (6, -1.0, 1.0),
+        (6, f64::NAN, 1.0),
+        (6, 1.0, -1.0),
+    ] {
+        let prism = Solid::prism(sides, radius, height);
+        let found = facets::faceted(&prism, 8, 1000).err();
+        assert!(
+            matches!(found, Some(FacetsError::BadParameter { leaf: "prism", .. })),
+            "{sides} {radius} {height}: {found:?}"
+        );
+        let found = facets::surface(&prism, 0.1, 1000, &unwatched).err();
+        assert!(matches!(found, Some(FacetsError::BadParameter { .. })), "{found:?}");
+    }
+}
+
 #[test]
 fn prisms_without_inside_are_refused() {
     for (sides, radii, ends, named) in [
@@ -103,6 +144,8 @@ fn prisms_without_inside_are_refused() {
         (6, [-1.0, 1.0], [0.0, 1.0], "bottom radius"),
         (6, [1.0, f64::NAN], [0.0, 1.0], "top radius"),
         (6, [1.0, 1.0], [1.0, 1.0], "height"),
+        (6, [1e200, 0.0], [0.0, 1.0], "larger radius"),
+        (6, [1.0, 0.0], [0.0, 1e-200], "height"),
         (6, [1.0, 1.0], [f64::NEG_INFINITY, 1.0], "bottom"),
     ] {
         let prism = Solid::primitive(Primitive::Prism(Prism { sides, radii, ends }));

@@ -62,7 +62,7 @@ impl Overlaps {
         let start = Instant::now();
         let solid = self.reading.read(&self.file, global)?.solid;
         let bounds = self.reading.compile(&self.file, &solid)?.bounds();
-        check_range(&bounds, 3, "volumes")?;
+        check_range(&bounds, 0.0, "volumes")?;
         let (names, solids) = self.pieces(&solid);
         let meter = Meter::interruptible(global, "comparing")?;
         let watch = |rays| meter.step(rays);

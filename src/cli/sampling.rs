@@ -41,17 +41,18 @@ impl SamplingArgs {
     }
 }
 
-/// Refuses what is so large or so small that a power of its size is no number.
-pub(super) fn check_range(bounds: &Aabb, power: i32, what: &str) -> anyhow::Result<()> {
+/// Refuses what is so large or so small that its volume, times a power of its width, is no number.
+pub(super) fn check_range(bounds: &Aabb, power: f64, what: &str) -> anyhow::Result<()> {
     /// Numbers go from 1e-308 to 1e308; sums need some room.
-    const NUMBERS: std::ops::RangeInclusive<f64> = 1e-300..=1e300;
-    let size = bounds.size().max_element();
-    let largest = size.powi(power);
-    if size > 0.0 && size.is_finite() && !NUMBERS.contains(&largest) {
-        let [low, high] =
-            [NUMBERS.start(), NUMBERS.end()].map(|x| x.powf(1.0 / f64::from(power)));
+    const DIGITS: f64 = 300.0;
+    let (size, width) = (bounds.size(), bounds.size().max_element());
+    let digits = |x: f64| x.log10();
+    let of_volume: f64 = size.to_array().into_iter().map(digits).sum();
+    // Of what has no inside, or no bounds, something else is said.
+    let most = of_volume + power * digits(width);
+    if most.is_finite() && most.abs() > DIGITS {
         bail!(
-            "the model is {size:e} wide: {what} of what is not from {low:.0e} to {high:.0e} wide are no numbers. Scale it"
+            "the model is {width:e} wide: {what} of it are beyond numbers, which go from 1e-{DIGITS} to 1e{DIGITS} here. Scale it"
         );
     }
     Ok(())

@@ -78,7 +78,7 @@ impl Volume {
         out: &mut dyn Write,
     ) -> anyhow::Result<Answer> {
         let (loaded, solid) = self.reading.load_and_keep(&self.file, global)?;
-        check_range(&loaded.scene.bounds(), 3, "volumes")?;
+        check_range(&loaded.scene.bounds(), 0.0, "volumes")?;
         let sampling = self.sampling.meant();
         let start = Instant::now();
         let meter = Meter::interruptible(global, "measuring")?;

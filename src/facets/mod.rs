@@ -29,7 +29,16 @@ pub use replace::{Faceted, faceted};
 pub use surface::surface;
 
 use crate::mesh::MeshError;
+use crate::primitive::{BadParameter, Facets, Primitive};
 use crate::shown::Shown;
+
+/// What facets stand for a primitive, if its sizes make a solid.
+fn of(primitive: &Primitive) -> Result<Facets, FacetsError> {
+    primitive.check().map_err(|BadParameter { parameter, value }| {
+        FacetsError::BadParameter { leaf: primitive.name(), parameter, value }
+    })?;
+    Ok(primitive.describe().facets())
+}
 
 /// Why a solid has no facets.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -38,6 +47,16 @@ pub enum FacetsError {
     /// A leaf that OpenSCAD does not have, so that there are no polyhedra for it.
     #[error("there are no facets for a {0}")]
     NoFacets(&'static str),
+    /// A leaf whose sizes make no solid.
+    #[error("the {leaf} has a {parameter} of {}", Shown(*.value))]
+    BadParameter {
+        /// What the leaf is called.
+        leaf: &'static str,
+        /// Which size.
+        parameter: &'static str,
+        /// What it is.
+        value: f64,
+    },
     /// So few segments make no polygon.
     #[error("a curve has at least 3 segments, not {0}")]
     TooFewSegments(u32),

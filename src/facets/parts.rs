@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::in_phase;
 use super::longest::longest;
-use super::{Faceted, FacetsError, boundary};
+use super::{Faceted, FacetsError, boundary, of};
 use crate::aabb::Aabb;
 use crate::mesh::{Mesh, MeshError, round};
 use crate::op::Op;
@@ -126,7 +126,7 @@ impl Making<'_> {
                 self.count(mesh.faces().len() as u64)?;
                 moved(mesh.points().to_vec(), mesh.faces().to_vec(), map)?
             }
-            Kind::Primitive(primitive) => match primitive.describe().facets() {
+            Kind::Primitive(primitive) => match of(primitive)? {
                 Facets::Polyhedron { points, faces } => {
                     self.count(faces.len() as u64)?;
                     moved(points, faces, map)?
@@ -228,6 +228,7 @@ pub(super) fn reach(solid: &Solid) -> f64 {
             Kind::Mapped(own) => (map * **own, None),
             Kind::Tagged(_) | Kind::Boolean(_) => (map, None),
             Kind::Mesh(mesh) => (map, Some(mesh.bounds())),
+            Kind::Primitive(primitive) if primitive.check().is_err() => (map, None),
             Kind::Primitive(primitive) => {
                 let around = primitive.describe().extent().mapped(&DAffine3::IDENTITY);
                 (map, Some(around).filter(Aabb::is_bounded))

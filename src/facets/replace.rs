@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::FacetsError;
+use super::{FacetsError, of};
 use crate::mesh::{Mesh, round};
 use crate::primitive::{Facets, Primitive};
 use crate::solid::{Kind, Solid};
@@ -106,7 +106,7 @@ impl Replace {
         let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect();
         // Keys of different kinds differ in length: 1, 4, and more.
         let (count, curves, key, make): (_, _, Vec<u64>, Box<dyn FnOnce() -> _>) =
-            match primitive.describe().facets() {
+            match of(primitive)? {
                 Facets::Ball { radius } => (
                     round::ball_triangles(segments),
                     1,

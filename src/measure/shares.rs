@@ -62,9 +62,13 @@ pub(super) fn next<T>(ratio: f64, shares: &[Share], rounds: &[Round<T>]) -> Next
             Share::Unknown | Share::Settled => None,
         })
     };
-    let squares: f64 = known().map(|(s, _)| s * s).sum();
-    let sum: f64 = known().map(|(s, n)| s.sqrt() * n.powf(0.75)).sum();
+    // In units of the largest, for squares of volumes are no numbers long before volumes are none.
+    let unit = known().map(|(s, _)| s).fold(0.0, f64::max);
+    let unit = if unit > 0.0 && unit.is_finite() { unit } else { 1.0 };
+    let squares: f64 = known().map(|(s, _)| (s / unit) * (s / unit)).sum();
+    let sum: f64 = known().map(|(s, n)| (s / unit).sqrt() * n.powf(0.75)).sum();
     let factor = |s: f64, n: f64| {
+        let s = s / unit;
         let common = growth? * (sum / squares).cbrt();
         let factor = common * s.sqrt() * n.powf(-0.25);
         (factor > LEAST).then_some(factor.min(MOST))

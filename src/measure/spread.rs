@@ -39,8 +39,8 @@ pub(super) fn root_of_squares(
     if largest == 0.0 || !largest.is_finite() {
         return largest;
     }
-    // Not below what has an inverse.
-    let unit = largest.log2().floor().max(-1000.0).exp2();
+    // A number, and one that has an inverse.
+    let unit = largest.log2().floor().clamp(-1000.0, 1023.0).exp2();
     let squares: f64 = numbers.map(|x| (x / unit) * (x / unit)).sum();
     unit * (squares / a / b).sqrt()
 }

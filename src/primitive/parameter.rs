@@ -13,10 +13,11 @@ pub(super) fn finite(parameter: &'static str, value: f64) -> Result<(), BadParam
     if value.is_finite() { Ok(()) } else { Err(BadParameter { parameter, value }) }
 }
 
-/// The smallest and the largest size of a quadric: their squares are numbers still.
+/// The smallest and the largest size of what is not a box: squares and quotients of these are
+/// numbers still.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-140..=1e140;
 
-/// A size of a quadric. What has planes alone has sizes that are [`positive`].
+/// A size of which squares or quotients are taken. Others have to be [`positive`] alone.
 pub(super) fn size(parameter: &'static str, value: f64) -> Result<(), BadParameter> {
     if SIZES.contains(&value) { Ok(()) } else { Err(BadParameter { parameter, value }) }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::parameter::{finite, not_negative, positive};
+use super::parameter::{finite, not_negative, size};
 use super::{BadParameter, Describe, Extent, Facets, Flat, MOST_FACES};
 use crate::angle::{cos_deg, sin_deg};
 use crate::mesh::round;
@@ -58,10 +58,10 @@ impl Describe for Prism {
         }
         not_negative("bottom radius", a)?;
         not_negative("top radius", b)?;
-        positive("larger radius", a.max(b))?;
+        size("larger radius", a.max(b))?;
         finite("bottom", bottom)?;
         finite("top", top)?;
-        positive("height", top - bottom)
+        size("height", top - bottom)
     }
 
     fn planes(&self) -> Vec<Flat> {

@@ -43,10 +43,10 @@ pub use weld::{NearMisses, Weld};
 /// A solid made ready for rays. No query on it can fail.
 ///
 /// Memory: at most 420 bytes a leaf and 110 a triangle beyond the solid it was compiled
-/// from, which can be dropped. While it is compiled, a leaf takes up to 1,000 and a triangle
+/// from, which can be dropped. While it is compiled, a leaf takes up to 1,500 and a triangle
 /// no more than that. Once many points were asked about, a leaf takes up to 600 bytes more
 /// and a triangle 110, and the scene 2 MiB; and 20 MiB while it learns. A prism of eight sides,
-/// which has more faces than others, takes 600 bytes, and 1,200 for points.
+/// which has more faces than others, takes 600 bytes, 2,200 while it is compiled, and 1,200 for points.
 #[derive(Debug)]
 pub struct Scene {
     /// The box around the solid.

@@ -6,8 +6,8 @@
 //!
 //! A leaf of a third kind would have its own file here, with the methods of [`Surface`] and where
 //! lines are inside. Then the compiler asks how regions, points and the machine's vectors see it:
-//! in the matches below, in `region.rs`, `point.rs`, `scene/beam/block.rs` and
-//! `scene/beam/meshes.rs`.
+//! in the matches below, in `region.rs`, `point.rs` and `scene/beam/block.rs`. Nobody asks where meshes
+//! are told from the rest: of what is neither, tiles must not believe that they know all crossings.
 
 mod ahead;
 mod chain;

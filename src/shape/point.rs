@@ -196,10 +196,10 @@ impl Shape {
         pad: f64,
         mut put: impl FnMut(Equation),
     ) {
-        if let Self::Polyhedron(_) = self {
-            return put(Equation::Unknown);
-        }
-        let (planes, wall) = self.sides();
+        let (planes, wall) = match self {
+            Self::Sides(leaf) => leaf.planes_and_wall(),
+            Self::Polyhedron(_) => return put(Equation::Unknown),
+        };
         if let Some(wall) = wall
             && faces & 1 == 1
         {
@@ -224,10 +224,10 @@ impl Shape {
 
     /// On which side of the leaf a point is that is no farther than `pad` from its box.
     pub(crate) fn beside(&self, p: DVec3, pad: f64) -> Beside {
-        if let Self::Polyhedron(_) = self {
-            return Beside::Unsure;
-        }
-        let (planes, wall) = self.sides();
+        let (planes, wall) = match self {
+            Self::Sides(leaf) => leaf.planes_and_wall(),
+            Self::Polyhedron(_) => return Beside::Unsure,
+        };
         match wall.map_or(Beside::In, |wall| of_one(wall.valued(p, pad))) {
             Beside::Out => Beside::Out,
             known @ (Beside::In | Beside::Unsure) => of_all(known, planes, p, pad),

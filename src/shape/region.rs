@@ -107,10 +107,10 @@ impl Region {
         let Some(part) = self.part_in(bounds, pad) else {
             return Side::Out;
         };
-        if let Shape::Polyhedron(_) = shape {
-            return Side::Crossing(ALL);
-        }
-        let (planes, wall) = shape.sides();
+        let (planes, wall) = match shape {
+            Shape::Sides(leaf) => leaf.planes_and_wall(),
+            Shape::Polyhedron(_) => return Side::Crossing(ALL),
+        };
         let mut open = self.of_planes(planes, part, pad);
         if let Some(wall) = wall
             && !open.apart

@@ -49,7 +49,11 @@ impl Sides {
             let has_planes = !leaf.planes.is_empty();
             let slack = Slack::of(&frame, chain, extent.radius(), has_planes);
             let reach = frame.reach(extent.coordinates());
-            (frame.bounds(&extent), slack, reach)
+            // A prism of four sides, turned to the axes, has corners beside its planes by rounding.
+            let is_box = leaf.is_box();
+            let bounds =
+                if is_box { leaf.bounds_by_planes() } else { frame.bounds(&extent) };
+            (bounds, slack, reach)
         };
         let condition = frame.condition();
         Ok(Placed { shape: Shape::Sides(leaf), bounds, condition, slack, reach })
@@ -160,12 +164,11 @@ impl Sides {
         &mut self.planes
     }
 
-    /// Whether it is a box along the axes: with six faces, all square to axes, nothing else is
-    /// bounded.
+    /// Whether it is a box along the axes: one plane on each side, and nothing else.
     pub(super) fn is_box(&self) -> bool {
         self.wall.is_none()
             && self.planes.len() == 6
-            && self.planes.iter().all(|plane| plane.axis().is_some())
+            && self.bounds_by_planes().is_bounded()
     }
 
     /// The surface on which a face lies, and whether the leaf is on the side where that surface's

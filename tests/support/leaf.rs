@@ -151,6 +151,7 @@ impl Leaf {
     }
 
     /// The planes that it is on the inner side of, in the order of its faces: `normal · p ≤ offset`.
+    /// Those of a prism are rounded.
     pub(crate) fn planes(&self) -> Vec<(DVec3, f64)> {
         match *self {
             Self::Cuboid { min, max } => DVec3::AXES

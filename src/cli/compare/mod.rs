@@ -107,7 +107,7 @@ impl Compare {
             reading.compile(&self.b, &b)?.bounds(),
         ];
         for bounds in &bounds {
-            check_range(bounds, 3, "volumes")?;
+            check_range(bounds, 0.0, "volumes")?;
         }
         let start = Instant::now();
         let meter = Meter::interruptible(global, "comparing")?;

@@ -79,7 +79,7 @@ impl Measure {
         let start = Instant::now();
         let solid = self.reading.read(&self.file, global)?.solid;
         let scene = self.reading.compile(&self.file, &solid)?;
-        check_range(&scene.bounds(), 5, "moments of inertia")?;
+        check_range(&scene.bounds(), 2.0, "moments of inertia")?;
         let parts = pieces(&solid, self.by);
         let densities = self.densities(&parts)?;
         let meter = Meter::interruptible(global, "measuring")?;

@@ -128,7 +128,7 @@ fn shared(report: &Report) -> Option<String> {
     };
     let whole = &report.whole.properties.as_ref()?.volume;
     let more = all(|q| Some(q.value))?.iter().sum::<f64>() - whole.value;
-    let squares: f64 = all(QuantityJson::half_width)?.iter().map(|h| h * h).sum();
-    let half_width = squares.sqrt().hypot(whole.half_width()?);
+    let half_widths = all(QuantityJson::half_width)?.into_iter();
+    let half_width = half_widths.fold(whole.half_width()?, f64::hypot);
     (more > 2.0 * half_width).then(|| number(more, half_width))
 }

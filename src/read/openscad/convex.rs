@@ -184,6 +184,7 @@ pub(super) fn fault(call: &Call<'_>, error: FacetsError) -> Located {
         }
         FacetsError::Mesh(error) => ReadErrorKind::Mesh(error),
         error @ (FacetsError::NoFacets(_)
+        | FacetsError::BadParameter { .. }
         | FacetsError::TooFewSegments(_)
         | FacetsError::BadTolerance(_)
         | FacetsError::Unbounded

@@ -214,7 +214,10 @@ impl Stretches<'_> {
             Some(dir) => dir,
             None => load3(simd, &block.dir, 0),
         };
-        let Shape::Sides(leaf) = shape else { return };
+        let leaf = match shape {
+            Shape::Sides(leaf) => leaf,
+            Shape::Polyhedron(_) => return,
+        };
         // What depends on a direction alone is found once where all have the same.
         let mut courses = leaf.courses(dir);
         for i in 0..BLOCK / S::F64_LANES {
