@@ -66,26 +66,26 @@ fn tally(models: impl Strategy<Value = Model>, times: u32) -> [Tally; 2] {
 }
 
 /// Lines that go anywhere, in one of three cases through places that are simple numbers, are
-/// clear in nine of ten cases, and almost half of those through rims and corners, along generators or
+/// almost all clear, and about half of those through rims and corners, along generators or
 /// tangent.
 fn assert_clear([free, aimed]: [Tally; 2]) {
-    assert!(100 * free.clear_rays >= 85 * free.rays, "{free:?}");
-    assert!(100 * aimed.clear_rays >= 40 * aimed.rays, "{aimed:?}");
+    assert!(100 * free.clear_rays >= 90 * free.rays, "{free:?}");
+    assert!(100 * aimed.clear_rays >= 45 * aimed.rays, "{aimed:?}");
     assert!(free.crossings >= free.rays / 8, "{free:?}");
     assert!(aimed.crossings >= aimed.rays / 4, "{aimed:?}");
 }
 
 #[test]
 fn leaves_are_crossed_where_200_bits_say() {
-    assert_clear(tally(placed_leaf(0..=2), 2));
+    assert_clear(tally(placed_leaf(0..=2), 4));
 }
 
 #[test]
 fn leaves_under_products_of_maps_are_crossed_where_200_bits_say() {
-    assert_clear(tally(placed_leaf(6..=10), 2));
+    assert_clear(tally(placed_leaf(6..=10), 4));
 }
 
 #[test]
 fn trees_are_crossed_where_200_bits_say() {
-    assert_clear(tally(tree(), 1));
+    assert_clear(tally(tree(), 4));
 }

@@ -209,7 +209,7 @@ fn a_line_almost_along_a_cylinder_is_as_exact_as_any() {
 /// Factors that are no powers of two round the map, the sizes and the ray.
 #[test]
 fn n14_scenes_scaled_by_1e6_give_the_same_leaves_and_places_within_8_u() {
-    let mut compared = 0;
+    let (mut compared, mut beyond) = (0, 0);
     for (model, scene_of_one, ray) in clear_cases(500) {
         for factor in [1e6, 1e-6] {
             let grow = DAffine3::from_scale(DVec3::splat(factor));
@@ -223,17 +223,20 @@ fn n14_scenes_scaled_by_1e6_give_the_same_leaves_and_places_within_8_u() {
                     let normal = scene_of_one.normal_at(&ray, &a);
                     let cosine = normal.dot(ray.dir).abs() / ray.speed();
                     let lengths = length_at_hand(&scene_of_one, &ray) / ray.speed();
-                    // Hyperboloids are differences of squares of lengths, each rounded by 3 u.
-                    let kind = scene_of_one.leaf(a.leaf).kind;
-                    let units = if kind.starts_with("hyper") { 12.0 } else { 8.0 };
-                    let allowed = units * U * (a.t.abs() + lengths) / cosine;
-                    assert!((a.t - b.t).abs() <= allowed, "{a:?} {b:?} {ray:?}");
+                    let units = (a.t - b.t).abs() * cosine / (U * (a.t.abs() + lengths));
+                    // One draw of a hyperboloid, which a line meets almost along its asymptote, is at
+                    // 8.9 u for both factors; its stated error is 24 times as large.
+                    let is_hyperboloid =
+                        scene_of_one.leaf(a.leaf).kind.starts_with("hyper");
+                    beyond += u32::from(units > 8.0);
+                    let most = if is_hyperboloid { 9.0 } else { 8.0 };
+                    assert!(units <= most, "{units}: {a:?} {b:?} {ray:?}");
                     compared += 1;
                 }
             }
         }
     }
-    assert!(compared > 300, "{compared}");
+    assert!(compared > 300 && beyond <= 2, "{beyond} of {compared}");
 }
 
 #[test]

@@ -257,18 +257,20 @@ impl Leaf {
                 .collect(),
             Self::Prism { sides, radii, height } => {
                 let corner = |radius: f64, z: f64, i: u32| {
-                    let (sine, cosine) =
-                        (2.0 * PI * f64::from(i) / f64::from(*sides)).sin_cos();
+                    let angle = 2.0 * PI * f64::from(i) / f64::from(*sides);
+                    let (sine, cosine) = angle.sin_cos();
                     dvec3(radius * cosine, radius * sine, z)
                 };
-                let around_side = |i: u32| {
+                let of_side = |i: u32| {
                     let low = [i, i + 1].map(|i| corner(radii[0], 0.0, i));
                     let high = [i, i + 1].map(|i| corner(radii[1], *height, i));
-                    let middles =
-                        [low, high, [low[0], high[0]]].map(|[a, b]| 0.5 * (a + b));
-                    [low[0], high[0], middles[0], middles[1], middles[2]]
+                    let middle = |[a, b]: [DVec3; 2]| 0.5 * (a + b);
+                    let edges = [low, high, [low[0], high[0]]].map(middle);
+                    let face = middle([edges[0], edges[1]]);
+                    [low[0], high[0], edges[0], edges[1], edges[2], face]
                 };
-                (0..*sides).flat_map(around_side).collect()
+                let axis = [0.0, 0.5, 1.0].map(|part| part * height * DVec3::Z);
+                (0..*sides).flat_map(of_side).chain(axis).collect()
             }
             Self::HalfSpace { normal, offset } => {
                 vec![*normal * (*offset / normal.length_squared())]
